@@ -1,6 +1,6 @@
 """ceiling.py FOLDER: how accurate a lane of the nearest 12 cones can be expected to be, by what the other families say of courses.
 
-FOLDER has FAMILY.scenes.jsonl and FAMILY.scenes.tracks.json of each family. Writes FAMILY.judge.lanes.jsonl (the answers of the judge below),
+FOLDER has FAMILY.scenes.jsonl and FAMILY.tracks.json of each family. Writes FAMILY.judge.lanes.jsonl (the answers of the judge below),
 FAMILY.truth.lanes.jsonl (the truth as an answer) and ceiling.json (a row for each family and rate).
 
 The model. A lane grows from the car: always the boundary that is behind gets its next cone, or ends. The place of the next cone has a density
@@ -11,7 +11,8 @@ probability; a beam search finds the probable lanes. A power of the probabilitie
 were seen. The power that suits the other families best is taken.
 
 The judge answers the lane that has at most one wrong cone with the highest probability. `expected` is the mean of this probability, `attained`
-the share of the scenes in which it is so. The other checks of `accurate` are left to `conelane score`.
+the share of the scenes in which it is so. The true lane is always among the lanes, also where the beam search loses it. The other checks of
+`accurate` are left to `conelane score`.
 """
 
 import json
@@ -341,15 +342,19 @@ def is_right(answer, truth):
     return len(set(answer[0] + answer[1]) ^ set(truth[0] + truth[1])) <= 1
 
 
-def power_of(outcomes):
-    """The power by which the answers are right as often as expected, judged by the likelihood. `outcomes`: (lanes, truth) each."""
-    def likelihood(power):
-        total = 0.0
-        for lanes, truth in outcomes:
+def log_likelihoods(outcomes):
+    """How likely it is, with each of the powers, that the answers are right and wrong where they are. `outcomes`: (lanes, truth) each."""
+    totals = [0.0] * len(POWERS)
+    for lanes, truth in outcomes:
+        for i, power in enumerate(POWERS):
             answer, expected = judged(lanes, power)
-            total += math.log(max(expected if is_right(answer, truth) else 1.0 - expected, 1e-3))
-        return total
-    return max(POWERS, key=likelihood)
+            totals[i] += math.log(max(expected if is_right(answer, truth) else 1.0 - expected, 1e-3))
+    return totals
+
+
+def power_of(likelihoods):
+    """The power of the greatest likelihood, over the given families."""
+    return POWERS[max(range(len(POWERS)), key=lambda i: sum(family[i] for family in likelihoods))]
 
 
 def loss(answer, truth):
@@ -426,10 +431,11 @@ def main(folder):
                        for scene in known.values() if scene.rate == 0.0 and scene.counts()])
         lanes[name] = {scene.id: shortened(posterior(model, scene.view, scene.lane), scene.inside, scene.all)
                        for scene in scenes.values() if scene.counts()}
+    likelihoods = {name: log_likelihoods([(found, scenes[scene].truth) for scene, found in lanes[name].items()])
+                   for name, (_, scenes) in families.items()}
     rows = []
     for name, (records, scenes) in families.items():
-        power = power_of([(found, families[other][1][scene].truth) for other in names if other != name
-                          for scene, found in lanes[other].items()])
+        power = power_of([likelihoods[other] for other in names if other != name])
         cells = defaultdict(lambda: defaultdict(float))
         lines = {"judge": [], "truth": []}
         for record in records:

@@ -81,12 +81,12 @@ def families_of(folds, tracks):
     return family_of
 
 
-def twelve_rows(folder):
-    """How often RLD's lane among 12 cones is accurate, by costs and rate, over all families. Scenes without annotated boundaries have no
-    accuracy."""
+def twelve_rows(folder, kinds=("default", "shape", "learned")):
+    """How often a lane of 12 cones is accurate, by costs of RLD (or another kind of answer) and rate, over all families. Scenes without
+    annotated boundaries have no accuracy."""
     right, scenes = defaultdict(float), defaultdict(int)
     for name in sorted(os.listdir(folder)):
-        if not name.endswith((".default.json", ".shape.json", ".learned.json")):
+        if not name.endswith(tuple(f".{kind}.json" for kind in kinds)):
             continue
         for line in lines_of(os.path.join(folder, name)):
             if line.get("accurate_share") is not None:
@@ -95,6 +95,22 @@ def twelve_rows(folder):
                 scenes[cell] += line["accuracy_scenes"]
     return [{"costs": costs, "rate": rate, "scenes": scenes[costs, rate], "accurate": rounded(right[costs, rate] / scenes[costs, rate])}
             for costs, rate in sorted(right)]
+
+
+def ceiling_rows(folder):
+    """The rows of ceiling.py, each family, and all together."""
+    path = os.path.join(folder, "ceiling.json")
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf-8") as stream:
+        rows = json.load(stream)
+    for rate in sorted({row["rate"] for row in rows}):
+        cells = [row for row in rows if row["rate"] == rate and row["family"] != "all"]
+        scenes = sum(row["scenes"] for row in cells)
+        together = {key: rounded(sum(row[key] * row["scenes"] for row in cells) / scenes) for key in ("expected", "attained")}
+        rows.append({"family": "all", "rate": rate, "scenes": scenes} | together |
+                    {key: sum(row[key] for row in cells) for key in ("start", "inside", "ends")})
+    return rows
 
 
 def collect(folder):
@@ -121,7 +137,9 @@ def collect(folder):
         stored["runs"][name] = provenance(record)
         stored["races"] += [{"run": name} | row for row in race_rows(record)]
     stored["twelve"] = twelve_rows(os.path.join(folder, "twelve"))
-    stored["runs"]["twelve"] = version_of(os.path.join(folder, "twelve", "version.txt"))
+    stored["ceiling"] = ceiling_rows(os.path.join(folder, "twelve"))
+    stored["ceiling_checks"] = twelve_rows(os.path.join(folder, "twelve"), ("judge", "truth"))
+    stored["runs"]["twelve"] = stored["runs"]["ceiling"] = version_of(os.path.join(folder, "twelve", "version.txt"))
     return stored
 
 
@@ -300,6 +318,23 @@ def twelve_table(figures):
     return table(["accurate, %", "0 %", "16.7 % (1 : 5)", "50 % (1 : 1)"], lines + [["RLD paper (its generated scenes)", "", "96.4", "above 90"]])
 
 
+def ceiling_table(figures):
+    """The judge of ceiling.py: expected and attained, and where it errs, by family; and what all checks of `accurate` leave."""
+    stored = figures.stored
+    rates = sorted({row["rate"] for row in stored.get("ceiling", [])})
+    lines = []
+    for family in ("fsd", "epfl", "eufs", "events", "fsai_sim", "all"):
+        cells = [row for row in stored.get("ceiling", []) if row["family"] == family]
+        lines.append([f"`{family}`" if family != "all" else "all"] +
+                     [f"{percent(row['expected'])} / {percent(row['attained'])}" for row in cells] +
+                     [", ".join(str(sum(row[where] for row in cells)) for where in ("start", "inside", "ends"))])
+    for costs, label in (("judge", "all checks: the judge"), ("truth", "all checks: the truth")):
+        cells = {row["rate"]: row["accurate"] for row in stored.get("ceiling_checks", []) if row["costs"] == costs}
+        lines.append([label] + [percent(cells.get(rate)) for rate in rates] + ["–"])
+    return table(["at most one wrong cone, %: expected / attained", "0 %", "16.7 % (1 : 5)", "50 % (1 : 1)", "errors at start, inside, at ends"],
+                 lines)
+
+
 TABLES = {
     "usable": usable_table,
     "quality at 30 m": lambda figures: quality_table(figures, 30.0),
@@ -316,6 +351,7 @@ TABLES = {
     "races by measure": race_measure_table,
     "ten laps": ten_laps_table,
     "twelve cones": twelve_table,
+    "ceiling of twelve cones": ceiling_table,
 }
 
 

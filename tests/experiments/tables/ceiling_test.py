@@ -91,8 +91,11 @@ class Judge(unittest.TestCase):
     def test_the_power_allows_for_answers_that_are_wrong_too_often(self):
         wrong = ((1, 98, 99), (11, 12))
         lanes = [((LEFT, RIGHT), 0.99), (wrong, 0.01)]
-        self.assertEqual(ceiling.power_of([(lanes, (LEFT, RIGHT))] * 100), 1.0)
-        self.assertEqual(ceiling.power_of([(lanes, (LEFT, RIGHT))] * 6 + [(lanes, wrong)] * 4), ceiling.POWERS[-1])
+        always_right = ceiling.log_likelihoods([(lanes, (LEFT, RIGHT))] * 3)
+        often_wrong = ceiling.log_likelihoods([(lanes, (LEFT, RIGHT))] * 6 + [(lanes, wrong)] * 4)
+        self.assertEqual(ceiling.power_of([always_right]), 1.0)
+        self.assertEqual(ceiling.power_of([often_wrong]), ceiling.POWERS[-1])
+        self.assertEqual(ceiling.power_of([always_right, often_wrong]), ceiling.POWERS[-1])
 
 
 class Fit(unittest.TestCase):
