@@ -69,6 +69,8 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     points_.clear();
     for (const Cone& cone : scene.cones) points_.push_back(cone.position);
     if (graph_.build(points_, options_.d_max_m, options_.edge_rule, budget_)) {
+        reach_.reset(graph_, options_.nearest_neighbours);
+        rules_.reach = &reach_;
         find_seeds(scene, report);
         for (Seed& seed : seeds()) {
             run_from(seed, &seed == &seeds().back(), scene, report);
@@ -122,7 +124,8 @@ bool CandidateSearch::find_remaining(const Lane& lane, const Scene& scene) {
 
 bool CandidateSearch::find_beam_guide(const Scene& scene, Report& report) {
     starts_.best(starts_.ranked().size(), pairs_to_try_);
-    beam_.start(graph_, scene, pairs_to_try_, *options_.step_scores, options_.bounds, options_.beam_width);
+    beam_.start(graph_, scene, pairs_to_try_, *options_.step_scores, options_.bounds, options_.beam_width,
+                &reach_);
     SearchBudget half = budget_;
     half.deadline = Deadline(budget_.deadline.remaining_ms() / 2.0);
     const std::size_t best = beam_.run(half);

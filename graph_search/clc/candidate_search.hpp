@@ -7,6 +7,7 @@
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
 #include "graph_search/clc/start_vertices.hpp"
+#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "graph_search/shared/search_graph.hpp"
 #include "model/deadline.hpp"
@@ -25,6 +26,9 @@ struct CandidateSearchOptions {
     std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2, for all starting pairs together
     double d_max_m = 5.5;                 ///< largest distance of consecutive cones
     EdgeRule edge_rule;                   ///< absent: all pairs within d_max, equation (2)
+    /// A boundary goes on to this many nearest neighbours of a cone only, see StepReach. 0: to all, as in the
+    /// paper.
+    std::size_t nearest_neighbours = 0;
     LaneBounds bounds;
     StartVertexRules start;
     std::size_t starting_pairs = 3;  ///< number of starting pairs that are tried
@@ -104,6 +108,7 @@ class CandidateSearch {
     CandidateSearchOptions options_;
     EnumerationRules rules_;
     SearchGraph graph_;
+    StepReach reach_;
     SearchBudget budget_;
     StartPairs starts_;
     std::vector<StartPair> pairs_to_try_;

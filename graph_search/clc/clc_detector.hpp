@@ -16,10 +16,11 @@ struct ClcOptions : CandidateSearchOptions {
 
 /// The search and the ranking of the paper: equation (3), the network on eight features.
 [[nodiscard]] ClcOptions paper_clc_options();
-/// The same algorithm with five additions: segments of up to 10 m, so a lane goes on past a missed cone; the
-/// first search follows the lane of a beam search by learned scores; the next-vertex decider weighs
-/// distances; a second search follows if one is not complete; the network sees all features. It was trained
-/// with a cost for unusable lanes, which leave the track within 20 m or end before.
+/// The same algorithm with six additions: segments of up to 10 m, so a lane goes on past a missed cone; only
+/// the 20 nearest neighbours of a cone may follow it; the first search follows the lane of a beam search by
+/// learned scores; the next-vertex decider weighs distances; a second search follows if one is not complete;
+/// the network sees all features. It was trained with a cost for unusable lanes, which leave the track within
+/// 20 m or end before.
 [[nodiscard]] ClcOptions extended_clc_options();
 /// The search of these options, without the ranking.
 [[nodiscard]] CandidateSearchOptions extended_search_options();

@@ -122,8 +122,10 @@ void validate(const StepScores& scores) {
 }
 
 void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<const StartPair> starts,
-                     const StepScores& scores, const LaneBounds& bounds, std::size_t width) {
+                     const StepScores& scores, const LaneBounds& bounds, std::size_t width,
+                     StepReach* reach) {
     graph_ = &graph;
+    reach_ = reach;
     scene_ = &scene;
     scores_ = &scores;
     bounds_ = bounds;
@@ -158,10 +160,14 @@ bool LaneBeam::advance(SearchBudget& budget) {
         const Vertex facing = from.last[opposite(side)];
         const bool is_lane = from.vertices[opposite(side)] > 1;
         const std::span<const Vertex> neighbours = graph_->neighbours(from.last[side]);
+        const Point& tip = graph_->position(from.last[side]);
+        const double reach_m2 =
+            reach_ != nullptr ? reach_->squared_m2(from.last[side]) : std::numeric_limits<double>::infinity();
         // A test of membership walks back along the lane; looking around a segment visits all neighbours.
         const std::size_t work =
             10 + (from.vertices[kLeft] + from.vertices[kRight]) / 8 + neighbours.size() / 8;
         for (const Vertex vertex : neighbours) {
+            if ((graph_->position(vertex) - tip).squaredNorm() > reach_m2) continue;
             if (budget.spend(work)) return false;
             if (!measure(number, side, vertex, step)) continue;
             const auto [low, high] = std::minmax(vertex, facing);

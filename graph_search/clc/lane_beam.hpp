@@ -3,6 +3,7 @@
 #include "conelane/scene.hpp"
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
+#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "graph_search/shared/search_graph.hpp"
 
@@ -99,9 +100,10 @@ class LaneBeam {
     static constexpr std::size_t kNone = ~std::size_t{0};
 
     /// The first level: the best `width` starting pairs. Keeps the references until the next call, and memory
-    /// from call to call. Precondition: width > 0.
+    /// from call to call. `reach`: `advance` leaves out longer steps; null: none. Precondition: width > 0.
     void start(const SearchGraph& graph, const Scene& scene, std::span<const StartPair> starts,
-               const StepScores& scores, const LaneBounds& bounds, std::size_t width);
+               const StepScores& scores, const LaneBounds& bounds, std::size_t width,
+               StepReach* reach = nullptr);
     /// The next level; returns whether it has a state. If the budget is spent before, returns false and keeps
     /// the level.
     bool advance(SearchBudget& budget);
@@ -160,6 +162,7 @@ class LaneBeam {
     [[nodiscard]] bool is_known(const Extension& extension) const;
 
     const SearchGraph* graph_ = nullptr;
+    StepReach* reach_ = nullptr;
     const Scene* scene_ = nullptr;
     const StepScores* scores_ = nullptr;
     LaneBounds bounds_;

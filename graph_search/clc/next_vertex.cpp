@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -44,8 +45,9 @@ double turning_measure(double angle_rad) {
     return measure(std::abs(std::sin(angle_rad)), std::cos(angle_rad));
 }
 
-void NextVertexDecider::reset(const SearchGraph& graph, double distance_weight_per_m) {
+void NextVertexDecider::reset(const SearchGraph& graph, double distance_weight_per_m, StepReach* reach) {
     graph_ = &graph;
+    reach_ = reach;
     distance_weight_per_m_ = distance_weight_per_m;
     options_.clear();
     ranges_.assign(graph.directed_edge_count(), Range{kUnknown, kUnknown});
@@ -57,13 +59,17 @@ NextVertexDecider::Range NextVertexDecider::after_start(Vertex start, const Poin
 
 NextVertexDecider::Range NextVertexDecider::sorted(Vertex vertex, const Point& direction) {
     const auto begin = static_cast<std::uint32_t>(options_.size());
+    const double reach_m2 =
+        reach_ != nullptr ? reach_->squared_m2(vertex) : std::numeric_limits<double>::infinity();
     SearchGraph::DirectedEdge edge = graph_->first_edge(vertex);
     for (const Vertex neighbour : graph_->neighbours(vertex)) {
+        const SearchGraph::DirectedEdge to_neighbour = edge++;
         const Point segment = graph_->position(neighbour) - graph_->position(vertex);
+        if (segment.squaredNorm() > reach_m2) continue;
         const double turning = turning_measure(direction, segment);
         double cost = turning;
         if (distance_weight_per_m_ > 0.0) cost += distance_weight_per_m_ * segment.norm();
-        options_.push_back({neighbour, edge++, turning, cost});
+        options_.push_back({neighbour, to_neighbour, turning, cost});
     }
     sort_by_cost(std::span(options_).subspan(begin));
     return {begin, static_cast<std::uint32_t>(options_.size())};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_graph.hpp"
 
 #include <cstddef>
@@ -38,8 +39,9 @@ class NextVertexDecider {
         std::uint32_t end;
     };
 
-    /// Clears the cache; `graph` must outlive the use of this object.
-    void reset(const SearchGraph& graph, double distance_weight_per_m = 0.0);
+    /// Clears the cache; `graph` and `reach` must outlive the use of this object. `reach`: farther neighbours
+    /// are left out; null: none is.
+    void reset(const SearchGraph& graph, double distance_weight_per_m = 0.0, StepReach* reach = nullptr);
 
     /// Neighbours of a first vertex, ordered by their angle with the car's heading (a unit vector).
     [[nodiscard]] Range after_start(Vertex start, const Point& heading);
@@ -59,6 +61,7 @@ class NextVertexDecider {
     [[nodiscard]] Range sorted(Vertex vertex, const Point& direction);
 
     const SearchGraph* graph_ = nullptr;
+    StepReach* reach_ = nullptr;
     double distance_weight_per_m_ = 0.0;
     std::vector<Range> ranges_;  ///< by directed edge
     std::vector<NextVertex> options_;

@@ -171,7 +171,7 @@ void PathPairEnumeration::begin(const SearchGraph& graph, StartPair start, const
     rules_ = rules;
     start_ = start;
     phi_max_ = turning_measure(rules.bounds.phi_max_rad);
-    next_vertex_.reset(graph, rules.next_vertex_distance_weight / rules.d_max_m);
+    next_vertex_.reset(graph, rules.next_vertex_distance_weight / rules.d_max_m, rules.reach);
     constraints_.reset(graph.position(start.left), graph.position(start.right), rules.bounds,
                        rules.width_backtracking);
     for (std::vector<std::uint8_t>& side : on_path_) side.assign(graph.vertex_count(), 0);

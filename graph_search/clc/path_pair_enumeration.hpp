@@ -3,6 +3,7 @@
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/lane_features.hpp"
 #include "graph_search/clc/next_vertex.hpp"
+#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "graph_search/shared/search_graph.hpp"
 
@@ -34,6 +35,7 @@ struct EnumerationRules {
     /// NVD's order counts k; a lane's are added up.
     std::uint32_t max_discrepancies = std::numeric_limits<std::uint32_t>::max();
     bool with_features = false;  ///< whether PathPairs::features is filled
+    StepReach* reach = nullptr;  ///< of the search graph: longer steps are left out; null: none is
 };
 
 /// A feasible path pair, given by the last of its steps.

@@ -100,6 +100,29 @@ struct Search {
     }
 };
 
+TEST(LaneBeam, LeavesOutStepsBeyondTheReach) {
+    std::size_t shorter = 0;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+        SCOPED_TRACE(seed);
+        Search search(random_scene(seed, 12), sensible_scores());
+        const auto starts = start_pairs(search.scene, std::numeric_limits<std::size_t>::max(), {});
+        StepReach reach;
+        reach.reset(search.graph, 3);
+        search.beam.start(search.graph, search.scene, starts, search.scores, {}, 8, &reach);
+        while (search.beam.advance(search.budget)) {
+            for (const std::size_t number : search.beam.level()) {
+                const LaneBeam::State& state = search.beam.state(number);
+                const Vertex from = state.before[state.pushed];
+                const Point step =
+                    search.graph.position(state.last[state.pushed]) - search.graph.position(from);
+                ASSERT_LE(step.squaredNorm(), reach.squared_m2(from));
+                ++shorter;
+            }
+        }
+    }
+    EXPECT_GT(shorter, 100u) << "steps were looked at";
+}
+
 TEST(StepScores, AreInterpolatedAndStayBeyondTheirEnds) {
     StepScores scores = zero_scores();
     score_at(scores, kWidthMeasure, 0) = 1.0;

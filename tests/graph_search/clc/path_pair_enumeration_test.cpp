@@ -30,10 +30,14 @@ struct Result {
     std::vector<PathPairVertices> vertices;
 };
 
-Result enumerate(const std::vector<Point>& points, const EnumerationRules& rules,
-                 std::int64_t iteration_limit = kNoLimit) {
+/// `nearest`: of StepReach.
+Result enumerate(const std::vector<Point>& points, EnumerationRules rules,
+                 std::int64_t iteration_limit = kNoLimit, std::size_t nearest = 0) {
     SearchGraph graph;
     graph.build(points, rules.d_max_m);
+    StepReach reach;
+    reach.reset(graph, nearest);
+    rules.reach = &reach;
     SearchBudget budget;
     budget.iteration_limit = iteration_limit;
     PathPairs pairs;
@@ -274,6 +278,44 @@ TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
             ++(keeps ? kept : left_out);
         }
         ASSERT_EQ(open_pairs(enumerate(points, few)), expected);
+    }
+    EXPECT_GT(kept, 100u);
+    EXPECT_GT(left_out, 100u);
+}
+
+/// By definition: whether no step goes to a vertex that `nearest` or more other neighbours are nearer than.
+bool steps_are_near(const std::vector<Point>& points, double d_max_m, const PathPairVertices& lane,
+                    std::size_t nearest) {
+    for (const std::vector<Vertex>& side : lane) {
+        for (std::size_t i = 1; i < side.size(); ++i) {
+            const auto distance_m = [&](Vertex to) { return (points[to] - points[side[i - 1]]).norm(); };
+            std::size_t nearer = 0;
+            for (Vertex other = 0; other < points.size(); ++other) {
+                if (other == side[i - 1] || distance_m(other) > d_max_m) continue;
+                if (distance_m(other) < distance_m(side[i])) ++nearer;
+            }
+            if (nearer >= nearest) return false;
+        }
+    }
+    return true;
+}
+
+TEST(PathPairEnumeration, LeavesOutStepsBeyondTheReach) {
+    EnumerationRules rules;
+    rules.width_backtracking = WidthBacktracking::proven;
+    std::size_t kept = 0;
+    std::size_t left_out = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = random_map(seed, 6 + seed % 4);
+        const std::size_t nearest = 1 + seed % 3;
+        std::multiset<PathPairVertices> expected;
+        for (const PathPairVertices& lane : open_pairs(enumerate(points, rules))) {
+            const bool keeps = steps_are_near(points, rules.d_max_m, lane, nearest);
+            if (keeps) expected.insert(lane);
+            ++(keeps ? kept : left_out);
+        }
+        ASSERT_EQ(open_pairs(enumerate(points, rules, kNoLimit, nearest)), expected);
     }
     EXPECT_GT(kept, 100u);
     EXPECT_GT(left_out, 100u);
