@@ -33,6 +33,11 @@ const DrivableLane& LaneChoice::reference(const DrivableLane& fresh, const Driva
     return jump_m(left, course, settings_.near_m) < from_fresh_m ? left : course;
 }
 
+bool LaneChoice::is_on(const DrivableLane& course, const DrivableLane& left) const {
+    return !is_spent(course) && !left.points.empty() &&
+           jump_m(left, course, settings_.on_course_m) <= settings_.on_course_offset_m;
+}
+
 /// Where the lane runs along the one driven so far, `weight` is added to what supported that one; elsewhere
 /// it is the only support.
 void LaneChoice::support(const DrivableLane& lane, double weight) {

@@ -28,6 +28,9 @@ class LaneChoice {
     /// agrees with the course then has to be confirmed as in the first lap.
     [[nodiscard]] const DrivableLane& reference(const DrivableLane& fresh, const DrivableLane& left,
                                                 const DrivableLane& course) const;
+    /// Whether a car at the beginning of `left` is on `course`, the one of the lap before, however far the
+    /// two part ahead. It is not on a course without a rest.
+    [[nodiscard]] bool is_on(const DrivableLane& course, const DrivableLane& left) const;
     /// Whether to drive by `fresh` from now on, which the frame supports with `weight`. `kept_weight`: the
     /// frame's support of the lane driven so far if `fresh` disagrees with it; 0 for no support.
     [[nodiscard]] bool take(const DrivableLane& fresh, const DrivableLane& left, double weight = 1.0,

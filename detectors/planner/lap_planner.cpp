@@ -45,6 +45,7 @@ class LapPlanner final : public Planner {
                                                          const DrivableLane& left) const;
     [[nodiscard]] std::optional<DrivableLane> chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                                           const DrivableLane& left);
+    [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left) const;
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
     void finish(Plan& plan) const;
 
@@ -121,7 +122,9 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
         plan.safe_m = plan.lane.trusted_m.value_or(0.0);
         started_ = true;
     } else if (!left.points.empty()) {
-        plan.lane = left;
+        const std::optional<DrivableLane> known = known_lane(frame.pose, left);
+        if (known) path_.remember(*known, path_.time_s());
+        plan.lane = known ? *known : left;
         plan.state = PlanState::bridging;
         plan.age_s = frame.time_s - path_.time_s();
         plan.safe_m = plan.lane.trusted_m.value_or(0.0);
@@ -150,7 +153,8 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
 
 /// The lane of a frame: the detector's answer if it continues the lane driven so far or outweighs it, else
 /// the most probable candidate that continues it; nothing without one. In later laps, the course known from
-/// the lap before replaces the lane driven so far, until it is outweighed.
+/// the lap before replaces the lane driven so far, until it is outweighed; no candidate is taken
+/// where the course replaces that lane also as the path.
 std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                                     const DrivableLane& left) {
     std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
@@ -183,9 +187,30 @@ std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, co
         if (kept) kept_weight += best;
     }
     const bool agrees = choice_.agrees(*fresh, before);
-    if (!choice_.take(*fresh, before, weight, kept_weight)) return kept;
+    if (!choice_.take(*fresh, before, weight, kept_weight)) {
+        // A candidate that agrees with the course near the car may leave it farther on, or end.
+        if (by_course && known_lane(scene.pose, left)) return std::nullopt;
+        return kept;
+    }
     if (by_course && !agrees) off_course_ = true;
     return fresh;
+}
+
+/// In later laps, what replaces the rest of the lane driven so far in a frame that gives no lane: the course
+/// of the lap before, if that rest is short or leaves the course by half a lane. The far end of a lane is
+/// from frames that saw it from afar, the course has been driven. A course that the car is off, or that was
+/// outweighed, replaces nothing.
+std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const DrivableLane& left) const {
+    if (off_course_) return std::nullopt;
+    DrivableLane course = course_.ahead(pose, choice_settings_.course_ahead_m);
+    if (!choice_.is_on(course, left)) return std::nullopt;
+    // The current lane is newer. It is kept while it runs in the lane of the lap before.
+    if (left.length_m >= choice_settings_.short_m &&
+        jump_m(left, course, choice_settings_.near_m) <= options_.drivable.default_width_m / 2.0)
+        return std::nullopt;
+    const double shared_m = common_m(course, left, choice_settings_.jump_m, choice_settings_.near_m);
+    course.trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
+    return course;
 }
 
 LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {

@@ -4,6 +4,7 @@
 #include "conelane/planner.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
+#include "tests/support/planner_frames.hpp"
 
 #include <cmath>
 
@@ -147,6 +148,16 @@ TEST(LaneChoice, OffTheCourseOfTheLapBeforeTheCourseIsTheReference) {
     EXPECT_EQ(&choice.reference(off, off, course), &course);
 }
 
+TEST(LaneChoice, ACarIsOnTheCourseOfTheLapBeforeWhereItIsNotAside) {
+    const LaneChoice choice{LaneChoiceSettings{}};
+    const DrivableLane course = line_aside(0.0, 3.5);
+    EXPECT_TRUE(choice.is_on(course, line_aside(0.4, 3.5)));
+    EXPECT_FALSE(choice.is_on(course, line_aside(0.9, 3.5)));
+    EXPECT_TRUE(choice.is_on(course, bent(3.0, 1.0))) << "the lane driven by leaves it ahead of the car";
+    EXPECT_FALSE(choice.is_on(DrivableLane{}, line_aside(0.0, 3.5))) << "there is no course";
+    EXPECT_FALSE(choice.is_on(course, DrivableLane{})) << "where the car is, nobody knows";
+}
+
 TEST(Steadied, NearTheCarNoiseMovesTheLineHalfAsMuchAndTheWidthsSaySo) {
     const DrivableLane lane = steadied(line_aside(0.4, 3.5), line_aside(0.0, 3.5), 0.5);
     for (const DrivablePoint& point : lane.points) {
@@ -202,6 +213,39 @@ TEST(LapPlanner, AShortLaneDoesNotEndThePath) {
     ASSERT_EQ(plan.state, PlanState::following);
     EXPECT_GT(plan.lane.points.back().position.x(), end_x_m - 1.0);
     EXPECT_LE(plan.safe_m, 12.0 - 4.8) << "only what the frame shows is trusted";
+}
+
+TEST(LapPlanner, InLaterLapsAFrameWithoutALaneIsBridgedByTheCourse) {
+    // The car sees 9 m, then nothing. In the second lap it knows the bend behind what it has seen.
+    const tests::DrivenCourse course = tests::oval(3);
+    for (const bool is_later : {false, true}) {
+        const auto planner = make_planner({.detector = "front", .laps = 3});
+        const double blind_m = course.lap_m / 2.0 + 6.0 + (is_later ? course.lap_m : 0.0);
+        int i = 0;
+        for (; 0.6 * i < blind_m; ++i) {
+            (void)planner->update(frame_at(course, 0.6 * i, 0.1 * i, {.range_m = 9.0}),
+                                  {.time_limit_ms = 1e4});
+        }
+        ASSERT_EQ(planner->course().has_value(), is_later);
+        for (int blind = 0; blind < 5; ++blind, ++i) {
+            const Plan plan = planner->update({0.1 * i, course.pose(0.6 * i), {}}, {.time_limit_ms = 1e4});
+            ASSERT_EQ(plan.state, PlanState::bridging);
+            EXPECT_NEAR(plan.age_s, 0.1 * (blind + 1), 1e-6) << "the course does not make it younger";
+            EXPECT_LE(plan.safe_m, 9.0) << "only what frames showed is trusted";
+            if (!is_later) {
+                EXPECT_LT(plan.lane.length_m, 12.0);
+                continue;
+            }
+            EXPECT_GT(plan.lane.length_m, 15.0);
+            EXPECT_LT(tests::farthest_from_middle_m(course, 0.6 * i, plan.lane), 0.5);
+        }
+        for (int blind = 5; blind < 12; ++blind, ++i) {
+            (void)planner->update({0.1 * i, course.pose(0.6 * i), {}}, {.time_limit_ms = 1e4});
+        }
+        EXPECT_EQ(planner->update({0.1 * i, course.pose(0.6 * i), {}}, {.time_limit_ms = 1e4}).state,
+                  PlanState::lost)
+            << "also a known course is driven blind for max_age_s only";
+    }
 }
 
 TEST(LapPlanner, AFrameOfTheSameTimeAtAnotherPoseIsNotFollowed) {
