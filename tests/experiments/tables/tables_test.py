@@ -283,8 +283,8 @@ class OneCommit(unittest.TestCase):
         self.expect(7)
 
     def test_runs_of_another_commit_are_refused(self):
-        self.program_of("0123456789ab")
-        self.expect(2, f"holds runs of commit 0123456789ab, but this checkout is {self.commit}")
+        self.program_of("another_commit")
+        self.expect(2, f"holds runs of commit another_commit, but this checkout is {self.commit}")
 
     def test_other_files_are_refused(self):
         self.executable(os.path.join(self.runs, "held_out.json"), "")
