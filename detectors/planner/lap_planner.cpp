@@ -45,7 +45,8 @@ class LapPlanner final : public Planner {
                                                          const DrivableLane& left) const;
     [[nodiscard]] std::optional<DrivableLane> chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                                           const DrivableLane& left);
-    [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left) const;
+    [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left,
+                                                         bool replaces_candidate) const;
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
     void finish(Plan& plan) const;
 
@@ -62,8 +63,9 @@ class LapPlanner final : public Planner {
     std::optional<double> time_s_;
     Pose pose_;  ///< of that time
     Plan last_;
-    bool started_ = false;     ///< a lane was driven
-    bool off_course_ = false;  ///< what is seen has outweighed the course of the lap before
+    bool started_ = false;                    ///< a lane was driven
+    bool course_replaces_candidate_ = false;  ///< in this frame, see chosen_lane
+    bool off_course_ = false;                 ///< what is seen has outweighed the course of the lap before
 };
 
 void LapPlanner::reset() {
@@ -106,6 +108,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     with_candidates.keep_candidates = true;
     plan.answer = detector_->detect(scene, with_candidates);
     const DrivableLane left = path_.left(frame.pose, frame.time_s);
+    course_replaces_candidate_ = false;
     std::optional<DrivableLane> fresh = chosen_lane(plan.answer, scene, left);
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
@@ -122,7 +125,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
         plan.safe_m = plan.lane.trusted_m.value_or(0.0);
         started_ = true;
     } else if (!left.points.empty()) {
-        const std::optional<DrivableLane> known = known_lane(frame.pose, left);
+        const std::optional<DrivableLane> known = known_lane(frame.pose, left, course_replaces_candidate_);
         if (known) path_.remember(*known, path_.time_s());
         plan.lane = known ? *known : left;
         plan.state = PlanState::bridging;
@@ -153,8 +156,7 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
 
 /// The lane of a frame: the detector's answer if it continues the lane driven so far or outweighs it, else
 /// the most probable candidate that continues it; nothing without one. In later laps, the course known from
-/// the lap before replaces the lane driven so far, until it is outweighed; no candidate is taken
-/// where the course replaces that lane also as the path.
+/// the lap before replaces the lane driven so far, until it is outweighed, and a candidate that continues it.
 std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                                     const DrivableLane& left) {
     std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
@@ -189,23 +191,24 @@ std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, co
     const bool agrees = choice_.agrees(*fresh, before);
     if (!choice_.take(*fresh, before, weight, kept_weight)) {
         // A candidate that agrees with the course near the car may leave it farther on, or end.
-        if (by_course && known_lane(scene.pose, left)) return std::nullopt;
-        return kept;
+        course_replaces_candidate_ = by_course && kept && known_lane(scene.pose, left, true);
+        return course_replaces_candidate_ ? std::nullopt : kept;
     }
     if (by_course && !agrees) off_course_ = true;
     return fresh;
 }
 
 /// In later laps, what replaces the rest of the lane driven so far in a frame that gives no lane: the course
-/// of the lap before, if that rest is short or leaves the course by half a lane. The far end of a lane is
-/// from frames that saw it from afar, the course has been driven. A course that the car is off, or that was
-/// outweighed, replaces nothing.
-std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const DrivableLane& left) const {
+/// of the lap before, if it replaces a candidate, or if that rest is short or leaves the course by half a
+/// lane. The far end of a lane is from frames that saw it from afar, the course has been driven. A course
+/// that the car is off, or that was outweighed, replaces nothing.
+std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const DrivableLane& left,
+                                                   bool replaces_candidate) const {
     if (off_course_) return std::nullopt;
     DrivableLane course = course_.ahead(pose, choice_settings_.course_ahead_m);
     if (!choice_.is_on(course, left)) return std::nullopt;
     // The current lane is newer. It is kept while it runs in the lane of the lap before.
-    if (left.length_m >= choice_settings_.short_m &&
+    if (!replaces_candidate && left.length_m >= choice_settings_.short_m &&
         jump_m(left, course, choice_settings_.near_m) <= options_.drivable.default_width_m / 2.0)
         return std::nullopt;
     const double shared_m = common_m(course, left, choice_settings_.jump_m, choice_settings_.near_m);
