@@ -8,7 +8,7 @@
 namespace conelane {
 
 /// How far a boundary may step from a vertex: to its nearest neighbours only, where cones are dense. Beyond
-/// the paper: with steps of up to 10 m a cone may have 150 neighbours, and nearly all are of other parts of
+/// the paper: with steps of up to 10 m a cone may have over 100 neighbours, most of them of other parts of
 /// the course. Features still count all neighbours.
 class StepReach {
   public:
