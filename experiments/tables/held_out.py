@@ -97,12 +97,9 @@ def twelve_rows(folder, kinds=("default", "shape", "learned")):
             for costs, rate in sorted(right)]
 
 
-def ceiling_rows(folder):
-    """The rows of ceiling.py, each family, and all together."""
-    path = os.path.join(folder, "ceiling.json")
-    if not os.path.exists(path):
-        return []
-    with open(path, encoding="utf-8") as stream:
+def judge_rows(folder):
+    """The rows of course_judge.py, each family, and all together."""
+    with open(os.path.join(folder, "course_judge.json"), encoding="utf-8") as stream:
         rows = json.load(stream)
     for rate in sorted({row["rate"] for row in rows}):
         cells = [row for row in rows if row["rate"] == rate and row["family"] != "all"]
@@ -137,9 +134,9 @@ def collect(folder):
         stored["runs"][name] = provenance(record)
         stored["races"] += [{"run": name} | row for row in race_rows(record)]
     stored["twelve"] = twelve_rows(os.path.join(folder, "twelve"))
-    stored["ceiling"] = ceiling_rows(os.path.join(folder, "twelve"))
-    stored["ceiling_checks"] = twelve_rows(os.path.join(folder, "twelve"), ("judge", "truth"))
-    stored["runs"]["twelve"] = stored["runs"]["ceiling"] = version_of(os.path.join(folder, "twelve", "version.txt"))
+    stored["judge"] = judge_rows(os.path.join(folder, "twelve"))
+    stored["judge_checks"] = twelve_rows(os.path.join(folder, "twelve"), ("judge", "truth"))
+    stored["runs"]["twelve"] = stored["runs"]["judge"] = version_of(os.path.join(folder, "twelve", "version.txt"))
     return stored
 
 
@@ -318,18 +315,18 @@ def twelve_table(figures):
     return table(["accurate, %", "0 %", "16.7 % (1 : 5)", "50 % (1 : 1)"], lines + [["RLD paper (its generated scenes)", "", "96.4", "above 90"]])
 
 
-def ceiling_table(figures):
-    """The judge of ceiling.py: expected and attained, and where it errs, by family; and what all checks of `accurate` leave."""
+def judge_table(figures):
+    """The judge of course_judge.py: expected and attained, and where it errs, by family; and what all checks of `accurate` leave."""
     stored = figures.stored
-    rates = sorted({row["rate"] for row in stored.get("ceiling", [])})
+    rates = sorted({row["rate"] for row in stored.get("judge", [])})
     lines = []
     for family in ("fsd", "epfl", "eufs", "events", "fsai_sim", "all"):
-        cells = [row for row in stored.get("ceiling", []) if row["family"] == family]
+        cells = [row for row in stored.get("judge", []) if row["family"] == family]
         lines.append([f"`{family}`" if family != "all" else "all"] +
                      [f"{percent(row['expected'])} / {percent(row['attained'])}" for row in cells] +
                      [", ".join(str(sum(row[where] for row in cells)) for where in ("start", "inside", "ends"))])
     for costs, label in (("judge", "all checks: the judge"), ("truth", "all checks: the truth")):
-        cells = {row["rate"]: row["accurate"] for row in stored.get("ceiling_checks", []) if row["costs"] == costs}
+        cells = {row["rate"]: row["accurate"] for row in stored.get("judge_checks", []) if row["costs"] == costs}
         lines.append([label] + [percent(cells.get(rate)) for rate in rates] + ["–"])
     return table(["at most one wrong cone, %: expected / attained", "0 %", "16.7 % (1 : 5)", "50 % (1 : 1)", "errors at start, inside, at ends"],
                  lines)
@@ -351,7 +348,7 @@ TABLES = {
     "races by measure": race_measure_table,
     "ten laps": ten_laps_table,
     "twelve cones": twelve_table,
-    "ceiling of twelve cones": ceiling_table,
+    "judge of twelve cones": judge_table,
 }
 
 

@@ -130,15 +130,14 @@ class Reproduce(unittest.TestCase):
         self.assertIn("the run 'b' is of commit d", found[0])
 
 
-    def test_families_of_the_ceiling_add_up_by_their_scenes(self):
+    def test_families_of_the_judge_add_up_by_their_scenes(self):
         def row(family, scenes, expected, attained, inside):
             return {"family": family, "rate": 0.5, "scenes": scenes, "power": 1.0, "expected": expected, "attained": attained, "start": 0,
                     "inside": inside, "ends": 1}
         with tempfile.TemporaryDirectory() as folder:
-            self.assertEqual(held_out.ceiling_rows(folder), [])
-            with open(os.path.join(folder, "ceiling.json"), "w", encoding="utf-8") as stream:
+            with open(os.path.join(folder, "course_judge.json"), "w", encoding="utf-8") as stream:
                 json.dump([row("a", 30, 0.9, 1.0, 0), row("b", 10, 0.5, 0.6, 3)], stream)
-            rows = held_out.ceiling_rows(folder)
+            rows = held_out.judge_rows(folder)
         self.assertEqual(rows[-1], {"family": "all", "rate": 0.5, "scenes": 40, "expected": 0.8, "attained": 0.9, "start": 0, "inside": 3, "ends": 2})
 
 

@@ -1,7 +1,7 @@
-"""ceiling.py FOLDER: how accurate a lane of the nearest 12 cones can be expected to be, by what the other families say of courses.
+"""course_judge.py FOLDER: how accurate a lane of the nearest 12 cones can be expected to be, by what the other families say of courses.
 
 FOLDER has FAMILY.scenes.jsonl and FAMILY.tracks.json of each family. Writes FAMILY.judge.lanes.jsonl (the answers of the judge below),
-FAMILY.truth.lanes.jsonl (the truth as an answer) and ceiling.json (a row for each family and rate).
+FAMILY.truth.lanes.jsonl (the truth as an answer) and course_judge.json (a row for each family and rate).
 
 The model. A lane grows from the car: always the boundary that is behind gets its next cone, or ends. The place of the next cone has a density
 given the last cones of both boundaries: a linear regression and a mixture of normal distributions around it, both fitted to the true lanes of
@@ -461,7 +461,7 @@ def main(folder):
                          "expected": round(cell["expected"] / cell["scenes"], 6), "attained": round(cell["attained"] / cell["scenes"], 6)} |
                         {where: int(cell[where]) for where in ("start", "inside", "ends")})
             print(json.dumps(rows[-1]), flush=True)
-    with open(os.path.join(folder, "ceiling.json"), "w", encoding="utf-8") as stream:
+    with open(os.path.join(folder, "course_judge.json"), "w", encoding="utf-8") as stream:
         json.dump(rows, stream, indent=1)
 
 

@@ -1,4 +1,4 @@
-"""ceiling_test.py ROOT: the judge of experiments/tables/ceiling.py on instances that can be followed by hand, and on lanes that its own model
+"""course_judge_test.py ROOT: the judge of experiments/tables/course_judge.py on instances that can be followed by hand, and on lanes that its own model
 draws. Exit code 77 without numpy."""
 
 import math
@@ -12,20 +12,20 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(ROOT, "experiments", "tables"))
 
 try:
-    import ceiling
+    import course_judge
 except ImportError as error:
     print(f"skipped: {error}")
     sys.exit(77)
 
 
 def normal(weights, variance):
-    return ceiling.Density(weights, [(1.0, 0.0, 0.0, variance, 0.0, variance)])
+    return course_judge.Density(weights, [(1.0, 0.0, 0.0, variance, 0.0, variance)])
 
 
 def straight_model(variance, early_end=0.01):
     """A straight lane 4 m wide, with a cone every 4 m from 2 m ahead of the car on."""
     onward = [[4.0], [0.0]]
-    return ceiling.Model({"first": normal([[2.0], [-2.0]], variance), "facing": normal([[2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]], variance),
+    return course_judge.Model({"first": normal([[2.0], [-2.0]], variance), "facing": normal([[2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]], variance),
                           "second": normal([row + [0.0] * 3 for row in onward], variance),
                           "next": normal([row + [0.0] * 7 for row in onward], variance),
                           "alone": normal([row + [0.0] * 2 for row in onward], variance)}, early_end)
@@ -37,8 +37,8 @@ COURSE = {1: (2.0, 2.0), 2: (6.0, 2.0), 3: (10.0, 2.0), 11: (2.0, -2.0), 12: (6.
 
 class Judge(unittest.TestCase):
     def probabilities(self, places, clutter, variance=0.1):
-        view = ceiling.View(places, 12.0, clutter)
-        return dict(ceiling.posterior(straight_model(variance), view))
+        view = course_judge.View(places, 12.0, clutter)
+        return dict(course_judge.posterior(straight_model(variance), view))
 
     def test_without_a_rival_the_lane_is_sure(self):
         self.assertGreater(self.probabilities(COURSE, 1e-3)[LEFT, RIGHT], 0.99)
@@ -64,26 +64,26 @@ class Judge(unittest.TestCase):
         # Two lanes differ by one cone: either answer is accurate for both. A third one differs by two from each.
         lanes = [((LEFT, RIGHT), 0.3), (((1, 2), RIGHT), 0.3), (((1, 98, 99), RIGHT), 0.4)]
         places = COURSE | {98: (6.0, 2.5), 99: (10.0, 2.5)}
-        answer, probability = ceiling.judged(ceiling.shortened(lanes, set(places), places))
+        answer, probability = course_judge.judged(course_judge.shortened(lanes, set(places), places))
         self.assertIn(answer, [(LEFT, RIGHT), ((1, 2), RIGHT)])
         self.assertAlmostEqual(probability, 0.6)
 
     def test_a_lane_is_cut_as_by_the_detector(self):
-        self.assertEqual(ceiling.cut((LEFT, RIGHT), {1, 3, 11, 12}, COURSE), ((1,), (11, 12)))
+        self.assertEqual(course_judge.cut((LEFT, RIGHT), {1, 3, 11, 12}, COURSE), ((1,), (11, 12)))
         places = COURSE | {3: (16.0, 2.0)}  # farther than 6.5 m from the last cone on the right
-        self.assertEqual(ceiling.cut((LEFT, (11, 12)), set(places), places), ((1, 2), (11, 12)))
+        self.assertEqual(course_judge.cut((LEFT, (11, 12)), set(places), places), ((1, 2), (11, 12)))
 
     def test_where_an_answer_differs(self):
         truth = ((1, 2, 3), (11, 12, 13))
-        self.assertEqual(ceiling.loss(((1, 2, 99), (11, 12, 13, 98)), truth), "ends")
-        self.assertEqual(ceiling.loss(((1, 99, 3), (11, 12, 13)), truth), "inside")
-        self.assertEqual(ceiling.loss(((99, 2, 3), (11, 12, 13)), truth), "start")
+        self.assertEqual(course_judge.loss(((1, 2, 99), (11, 12, 13, 98)), truth), "ends")
+        self.assertEqual(course_judge.loss(((1, 99, 3), (11, 12, 13)), truth), "inside")
+        self.assertEqual(course_judge.loss(((99, 2, 3), (11, 12, 13)), truth), "start")
 
     def test_cones_beside_the_lane_count_by_their_own_density(self):
-        view = ceiling.View(COURSE | {98: (8.0, 4.0), 99: (8.0, 8.0)}, 12.0, 0.01)
-        number, area_m2 = ceiling.beside((LEFT, RIGHT), view)
+        view = course_judge.View(COURSE | {98: (8.0, 4.0), 99: (8.0, 8.0)}, 12.0, 0.01)
+        number, area_m2 = course_judge.beside((LEFT, RIGHT), view)
         self.assertEqual(number, 1)  # cone 98, 2 m from the left boundary
-        self.assertAlmostEqual(area_m2, 2 * 8.0 * 2 * ceiling.BESIDE_M)
+        self.assertAlmostEqual(area_m2, 2 * 8.0 * 2 * course_judge.BESIDE_M)
         model = straight_model(0.1)
         model.beside, model.far = 0.0, 0.03
         self.assertAlmostEqual(model.log_of_others((LEFT, RIGHT), view), math.log(0.25) + 0.03 * area_m2)
@@ -91,11 +91,11 @@ class Judge(unittest.TestCase):
     def test_the_power_allows_for_answers_that_are_wrong_too_often(self):
         wrong = ((1, 98, 99), (11, 12))
         lanes = [((LEFT, RIGHT), 0.99), (wrong, 0.01)]
-        always_right = ceiling.log_likelihoods([(lanes, (LEFT, RIGHT))] * 3)
-        often_wrong = ceiling.log_likelihoods([(lanes, (LEFT, RIGHT))] * 6 + [(lanes, wrong)] * 4)
-        self.assertEqual(ceiling.power_of([always_right]), 1.0)
-        self.assertEqual(ceiling.power_of([often_wrong]), ceiling.POWERS[-1])
-        self.assertEqual(ceiling.power_of([always_right, often_wrong]), ceiling.POWERS[-1])
+        always_right = course_judge.log_likelihoods([(lanes, (LEFT, RIGHT))] * 3)
+        often_wrong = course_judge.log_likelihoods([(lanes, (LEFT, RIGHT))] * 6 + [(lanes, wrong)] * 4)
+        self.assertEqual(course_judge.power_of([always_right]), 1.0)
+        self.assertEqual(course_judge.power_of([often_wrong]), course_judge.POWERS[-1])
+        self.assertEqual(course_judge.power_of([always_right, often_wrong]), course_judge.POWERS[-1])
 
 
 class Fit(unittest.TestCase):
@@ -103,22 +103,22 @@ class Fit(unittest.TestCase):
         source = random.Random(3)
         features = [(1.0, source.uniform(3, 5)) for _ in range(4000)]
         targets = [(f[1] + source.gauss(0, 0.3), 0.5 + source.gauss(0, 0.1)) for f in features]
-        density = ceiling.fitted(features, targets)
+        density = course_judge.fitted(features, targets)
         x, y = density.mean((1.0, 4.0))
         self.assertAlmostEqual(x, 4.0, delta=0.03)
         self.assertAlmostEqual(y, 0.5, delta=0.03)
-        variance = [0.3**2 + ceiling.SMOOTHING_M2, 0.1**2 + ceiling.SMOOTHING_M2]
-        at_mean = math.log((1 - ceiling.STRAY[0]) / (2 * math.pi * math.sqrt(variance[0] * variance[1])))
+        variance = [0.3**2 + course_judge.SMOOTHING_M2, 0.1**2 + course_judge.SMOOTHING_M2]
+        at_mean = math.log((1 - course_judge.STRAY[0]) / (2 * math.pi * math.sqrt(variance[0] * variance[1])))
         self.assertAlmostEqual(density.log(0.0, 0.0), at_mean, delta=0.1)
 
 
 class Calibration(unittest.TestCase):
     def drawn(self, model, source, clutter):
         """A view with a lane of the model and uniform other cones, of the clutter's density."""
-        view = ceiling.View({}, 14.0, clutter)
+        view = course_judge.View({}, 14.0, clutter)
         lane, ended, cone = ([], []), [False, False], 0
-        while (side := ceiling.side_to_grow(lane, ended, view.places)) is not None:
-            context = ceiling.Context(lane, side, ended, view.places)
+        while (side := course_judge.side_to_grow(lane, ended, view.places)) is not None:
+            context = course_judge.Context(lane, side, ended, view.places)
             density = model.densities[context.kind]
             mean = density.mean(context.features)
             x, y = density.draw(source)
@@ -145,12 +145,12 @@ class Calibration(unittest.TestCase):
         expected, attained, scenes = 0.0, 0, 0
         while scenes < 300:
             view, lane = self.drawn(model, source, 0.1)
-            lane = ceiling.cut(lane, set(view.places), view.places)
+            lane = course_judge.cut(lane, set(view.places), view.places)
             if len(lane[0]) < 2 or len(lane[1]) < 2:
                 continue  # such scenes are not counted, and the judge knows that
-            answer, probability = ceiling.judged(ceiling.shortened(ceiling.posterior(model, view), set(view.places), view.places))
+            answer, probability = course_judge.judged(course_judge.shortened(course_judge.posterior(model, view), set(view.places), view.places))
             expected += probability
-            attained += ceiling.is_right(answer, lane)
+            attained += course_judge.is_right(answer, lane)
             scenes += 1
         self.assertLess(expected / scenes, 0.95)  # otherwise there is nothing to see
         deviation = math.sqrt(expected / scenes * (1 - expected / scenes) / scenes)
