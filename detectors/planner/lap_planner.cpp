@@ -26,10 +26,10 @@ void validate(const PlannerOptions& options) {
 
 class LapPlanner final : public Planner {
   public:
-    explicit LapPlanner(const PlannerOptions& options)
+    LapPlanner(const PlannerOptions& options, std::unique_ptr<LaneDetector> detector)
         : options_(options),
           laps_(options.laps.value_or(options.mission == Mission::autocross ? 1 : 10)),
-          detector_(make_detector(options.detector, options.detector_options)),
+          detector_(std::move(detector)),
           path_(choice_settings_, options.drivable.step_m, options.max_age_s),
           choice_(choice_settings_),
           counter_(course_settings_),
@@ -40,13 +40,18 @@ class LapPlanner final : public Planner {
     void reset() override;
 
   private:
+    /// What a frame says of the path; nothing: no lane.
+    struct Choice {
+        std::optional<DrivableLane> fresh;  ///< of this frame
+        std::optional<DrivableLane> known;  ///< of the lap before, instead of one of this frame
+    };
+
     void move_along(const RigidShift& shift);
     [[nodiscard]] std::optional<DrivableLane> fresh_lane(const LaneAnswer& answer, const Scene& scene,
                                                          const DrivableLane& left) const;
-    [[nodiscard]] std::optional<DrivableLane> chosen_lane(const LaneAnswer& answer, const Scene& scene,
-                                                          const DrivableLane& left);
-    [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left,
-                                                         bool replaces_candidate) const;
+    [[nodiscard]] Choice chosen_lane(const LaneAnswer& answer, const Scene& scene, const DrivableLane& left);
+    [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left) const;
+    [[nodiscard]] bool is_worse(const DrivableLane& left, const DrivableLane& known) const;
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
     void finish(Plan& plan) const;
 
@@ -63,9 +68,8 @@ class LapPlanner final : public Planner {
     std::optional<double> time_s_;
     Pose pose_;  ///< of that time
     Plan last_;
-    bool started_ = false;                    ///< a lane was driven
-    bool course_replaces_candidate_ = false;  ///< in this frame, see chosen_lane
-    bool off_course_ = false;                 ///< what is seen has outweighed the course of the lap before
+    bool started_ = false;     ///< a lane was driven
+    bool off_course_ = false;  ///< what is seen has outweighed the course of the lap before
 };
 
 void LapPlanner::reset() {
@@ -108,8 +112,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     with_candidates.keep_candidates = true;
     plan.answer = detector_->detect(scene, with_candidates);
     const DrivableLane left = path_.left(frame.pose, frame.time_s);
-    course_replaces_candidate_ = false;
-    std::optional<DrivableLane> fresh = chosen_lane(plan.answer, scene, left);
+    auto [fresh, known] = chosen_lane(plan.answer, scene, left);
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
     if (fresh) {
@@ -125,7 +128,10 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
         plan.safe_m = plan.lane.trusted_m.value_or(0.0);
         started_ = true;
     } else if (!left.points.empty()) {
-        const std::optional<DrivableLane> known = known_lane(frame.pose, left, course_replaces_candidate_);
+        if (!known) {
+            known = known_lane(frame.pose, left);
+            if (known && !is_worse(left, *known)) known.reset();
+        }
         if (known) path_.remember(*known, path_.time_s());
         plan.lane = known ? *known : left;
         plan.state = PlanState::bridging;
@@ -157,10 +163,10 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
 /// The lane of a frame: the detector's answer if it continues the lane driven so far or outweighs it, else
 /// the most probable candidate that continues it; nothing without one. In later laps, the course known from
 /// the lap before replaces the lane driven so far, until it is outweighed, and a candidate that continues it.
-std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
-                                                    const DrivableLane& left) {
+LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
+                                           const DrivableLane& left) {
     std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
-    if (!fresh) return std::nullopt;
+    if (!fresh) return {};
     const DrivableLane course = course_.ahead(scene.pose, choice_settings_.course_ahead_m);
     if (off_course_ && choice_.agrees(*fresh, course)) off_course_ = false;
     const bool is_in_later_lap = !off_course_ && !left.points.empty() && !course.points.empty();
@@ -191,29 +197,32 @@ std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, co
     const bool agrees = choice_.agrees(*fresh, before);
     if (!choice_.take(*fresh, before, weight, kept_weight)) {
         // A candidate that agrees with the course near the car may leave it farther on, or end.
-        course_replaces_candidate_ = by_course && kept && known_lane(scene.pose, left, true);
-        return course_replaces_candidate_ ? std::nullopt : kept;
+        if (by_course && kept) {
+            if (std::optional<DrivableLane> known = known_lane(scene.pose, left))
+                return {{}, std::move(known)};
+        }
+        return {std::move(kept), {}};
     }
     if (by_course && !agrees) off_course_ = true;
-    return fresh;
+    return {std::move(fresh), {}};
 }
 
-/// In later laps, what replaces the rest of the lane driven so far in a frame that gives no lane: the course
-/// of the lap before, if it replaces a candidate, or if that rest is short or leaves the course by half a
-/// lane. The far end of a lane is from frames that saw it from afar, the course has been driven. A course
-/// that the car is off, or that was outweighed, replaces nothing.
-std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const DrivableLane& left,
-                                                   bool replaces_candidate) const {
+/// In later laps: the course of the lap before, up to `course_ahead_m`, if the car is on it and nothing has
+/// outweighed it. It has been driven, whereas the far end of a lane is from frames that saw it from afar.
+std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const DrivableLane& left) const {
     if (off_course_) return std::nullopt;
     DrivableLane course = course_.ahead(pose, choice_settings_.course_ahead_m);
     if (!choice_.is_on(course, left)) return std::nullopt;
-    // The current lane is newer. It is kept while it runs in the lane of the lap before.
-    if (!replaces_candidate && left.length_m >= choice_settings_.short_m &&
-        jump_m(left, course, choice_settings_.near_m) <= options_.drivable.default_width_m / 2.0)
-        return std::nullopt;
     const double shared_m = common_m(course, left, choice_settings_.jump_m, choice_settings_.near_m);
     course.trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
     return course;
+}
+
+/// Whether the rest of the lane driven so far is worse than the course of the lap before. It is newer, so it
+/// is kept while it is long enough and runs in the lane of the lap before.
+bool LapPlanner::is_worse(const DrivableLane& left, const DrivableLane& known) const {
+    return left.length_m < choice_settings_.short_m ||
+           jump_m(left, known, choice_settings_.near_m) > options_.drivable.default_width_m / 2.0;
 }
 
 LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {
@@ -246,7 +255,13 @@ void LapPlanner::finish(Plan& plan) const {
 
 std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options) {
     validate(options);
-    return std::make_unique<LapPlanner>(options);
+    return make_lap_planner(options, make_detector(options.detector, options.detector_options));
+}
+
+std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options,
+                                          std::unique_ptr<LaneDetector> detector) {
+    validate(options);
+    return std::make_unique<LapPlanner>(options, std::move(detector));
 }
 
 }  // namespace conelane

@@ -4,9 +4,16 @@
 #include "conelane/planner.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
+#include "detectors/planner/lap_planner.hpp"
 #include "tests/support/planner_frames.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -245,6 +252,101 @@ TEST(LapPlanner, InLaterLapsAFrameWithoutALaneIsBridgedByTheCourse) {
         EXPECT_EQ(planner->update({0.1 * i, course.pose(0.6 * i), {}}, {.time_limit_ms = 1e4}).state,
                   PlanState::lost)
             << "also a known course is driven blind for max_age_s only";
+    }
+}
+
+/// Answers what the test says.
+class ScriptedDetector : public LaneDetector {
+  public:
+    explicit ScriptedDetector(std::function<LaneAnswer(const Scene&)> script) : script_(std::move(script)) {}
+
+  protected:
+    LaneAnswer search(const Scene& scene, const DetectionLimits& /*limits*/) override {
+        return script_(scene);
+    }
+
+  private:
+    std::function<LaneAnswer(const Scene&)> script_;
+};
+
+std::optional<ConeId> cone_at(const Scene& scene, const Point& position) {
+    for (const Cone& cone : scene.cones) {
+        if ((cone.position - position).norm() < 0.01) return cone.id;
+    }
+    return std::nullopt;
+}
+
+/// The oval and a second row of gates 3 m to the right of its own: a lane may change from one to the other.
+class OvalWithRivals {
+  public:
+    [[nodiscard]] const tests::DrivenCourse& course() const { return course_; }
+    /// The frame of a car at `s_m`; ids differ from those of the rivals.
+    [[nodiscard]] Frame frame(double s_m, double time_s, bool with_rivals) const {
+        Frame seen = tests::frame_at(course_, s_m, time_s);
+        if (!with_rivals) return seen;
+        for (const int gate : ahead(s_m)) {
+            const auto [left, right] = at(gate, true);
+            seen.cones.push_back({1000 + 2 * gate, left});
+            seen.cones.push_back({1001 + 2 * gate, right});
+        }
+        return seen;
+    }
+    /// The next five gates, those more than `leaves_m` ahead from the second row.
+    [[nodiscard]] Lane lane(const Scene& scene, double s_m, double leaves_m) const {
+        Lane result;
+        for (const int gate : ahead(s_m)) {
+            const auto [left, right] = at(gate, gate * spacing_m_ - s_m > leaves_m);
+            result.left.push_back(cone_at(scene, left).value());
+            result.right.push_back(cone_at(scene, right).value());
+        }
+        return result;
+    }
+
+  private:
+    [[nodiscard]] std::vector<int> ahead(double s_m) const {
+        const int first = static_cast<int>(std::ceil(s_m / spacing_m_));
+        return {first, first + 1, first + 2, first + 3, first + 4};
+    }
+    [[nodiscard]] std::pair<Point, Point> at(int gate, bool is_rival) const {
+        const Pose pose = course_.pose(gate * spacing_m_);
+        const Point left(-std::sin(pose.yaw_rad), std::cos(pose.yaw_rad));
+        const double aside_m = is_rival ? -3.0 : 0.0;
+        return {pose.position + (aside_m + 1.75) * left, pose.position + (aside_m - 1.75) * left};
+    }
+
+    tests::DrivenCourse course_ = tests::oval(3);
+    const double spacing_m_ = course_.lap_m / (static_cast<double>(course_.cones.size()) / 2.0);
+};
+
+TEST(LapPlanner, InLaterLapsTheCourseReplacesACandidateThatLeavesItFartherOn) {
+    // In the second lap, the detector answers with a lane that leaves the course 3 m ahead. Its second lane
+    // leaves it 11 m ahead, beyond the 8 m that are compared.
+    const OvalWithRivals oval;
+    double s_m = 0.0;
+    bool is_wrong = false;
+    const auto planner =
+        make_lap_planner({.laps = 3}, std::make_unique<ScriptedDetector>([&](const Scene& scene) {
+                             LaneAnswer answer;
+                             answer.status = LaneStatus::found;
+                             answer.lane = oval.lane(scene, s_m, is_wrong ? 3.0 : 100.0);
+                             answer.confidence = is_wrong ? 0.3 : 0.95;
+                             answer.trusted_m = is_wrong ? 0.0 : 10.0;
+                             if (is_wrong)
+                                 answer.enumeration = {1, true, {{oval.lane(scene, s_m, 11.0), 1, 0.2}}};
+                             return answer;
+                         }));
+    int i = 0;
+    for (; s_m < oval.course().lap_m + 20.0; ++i, s_m += 0.6) {
+        ASSERT_EQ(planner->update(oval.frame(s_m, 0.1 * i, false), {}).state, PlanState::following) << s_m;
+    }
+    ASSERT_TRUE(planner->course());
+    is_wrong = true;
+    for (int wrong = 1; wrong <= 4; ++wrong, ++i, s_m += 0.6) {
+        const Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), {});
+        EXPECT_EQ(plan.state, PlanState::bridging);
+        EXPECT_NEAR(plan.age_s, 0.1 * wrong, 1e-6);
+        EXPECT_GT(plan.lane.length_m, 15.0);
+        EXPECT_LT(tests::farthest_from_middle_m(oval.course(), s_m, plan.lane), 0.5);
     }
 }
 
