@@ -62,10 +62,18 @@ LearnedFeatures::LearnedFeatures(const Scene& scene, const LaneGraphProblem& pro
                                  const std::function<bool(std::size_t)>& stop)
     : scene_(&scene), problem_(&problem) {
     const std::size_t n = problem.cone_count;
+    position_.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) position_.push_back(scene.cones[i].position);
     distance_m_.resize(n);
     ahead_m_.resize(n);
     cone_crowd_.resize(n);
     around_.resize(n);
+    around_edges_.resize(n);
+    double longest_squared = 0.0;
+    for (const ProblemEdge& edge : problem.edges) {
+        if (!edge.high_cost)
+            longest_squared = std::max(longest_squared, (at(edge.j) - at(edge.i)).squaredNorm());
+    }
     for (std::size_t i = 0; i < n; ++i) {
         distance_m_[i] = (at(i) - scene.pose.position).norm();
         ahead_m_[i] = scene.pose.ahead_m(at(i));
@@ -76,7 +84,9 @@ LearnedFeatures::LearnedFeatures(const Scene& scene, const LaneGraphProblem& pro
         if (stop && stop(2 * n)) return;
         cone_crowd_[i] = crowd(at(i), i, i);
         for (std::size_t k = 0; k < n; ++k) {
-            if (k != i && (at(k) - at(i)).squaredNorm() <= square(kAround_m)) around_[i].push_back(k);
+            const double squared = (at(k) - at(i)).squaredNorm();
+            if (k != i && squared <= square(kAround_m)) around_[i].push_back(k);
+            if (k != i && squared <= longest_squared) around_edges_[i].push_back(k);
         }
     }
     facing_ = facing_at_any_width(scene, problem.edges, stop);
@@ -158,15 +168,15 @@ std::array<double, kTurnFeatures> LearnedFeatures::turn(std::size_t edge_i, std:
         const auto count = [&](std::size_t cone) {
             if (cone == i || cone == k || cone == middle) return;
             const Point way = at(cone) - at(middle);
-            const double depth = std::min({side * cross(back, way) / back_m, side * cross(way, on) / on_m,
-                                           side * cross(chord, at(cone) - at(k)) / chord_m});
-            inside += ramp(depth / kRamp_m);
+            const double from_back = side * cross(back, way);
+            const double from_on = side * cross(way, on);
+            const double from_chord = side * cross(chord, at(cone) - at(k));
+            if (from_back <= 0.0 || from_on <= 0.0 || from_chord <= 0.0) return;
+            inside += ramp(std::min({from_back / back_m, from_on / on_m, from_chord / chord_m}) / kRamp_m);
         };
-        if (std::max(back_m, on_m) <= kAround_m) {
-            for (const std::size_t cone : around_[middle]) count(cone);
-        } else {
-            for (std::size_t cone = 0; cone < problem_->cone_count; ++cone) count(cone);
-        }
+        // No point of the triangle is farther from the middle cone than one of the other two.
+        const bool is_short = std::max(back_m, on_m) <= kAround_m;
+        for (const std::size_t cone : (is_short ? around_ : around_edges_)[middle]) count(cone);
     }
     const double angle = std::sqrt(std::sqrt(angle_cost));
     const auto gap = [](double length) { return std::max(0.0, length - kGapBegins_m); };

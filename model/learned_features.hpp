@@ -38,17 +38,19 @@ class LearnedFeatures {
     [[nodiscard]] std::array<double, kFarEndFeatures> far_end(std::size_t cone) const;
 
   private:
-    [[nodiscard]] const Point& at(std::size_t cone) const { return scene_->cones[cone].position; }
+    [[nodiscard]] const Point& at(std::size_t cone) const { return position_[cone]; }
     [[nodiscard]] double crowd(const Point& place, std::size_t without, std::size_t and_without) const;
 
     const Scene* scene_;
     const LaneGraphProblem* problem_;
+    std::vector<Point> position_;     ///< of each cone, close together in memory
     std::vector<double> distance_m_;  ///< of each cone from the car
     std::vector<double> ahead_m_;
     double view_m_ = 0.0;  ///< how far the car sees
     std::vector<double> cone_crowd_;
-    std::vector<double> facing_;                    ///< by edge, for a lane of any width
-    std::vector<std::vector<std::size_t>> around_;  ///< cones within kAround_m of each
+    std::vector<double> facing_;                          ///< by edge, for a lane of any width
+    std::vector<std::vector<std::size_t>> around_;        ///< cones within kAround_m of each
+    std::vector<std::vector<std::size_t>> around_edges_;  ///< cones as near as the ends of the longest edge
 };
 
 }  // namespace conelane

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <Eigen/Geometry>
 
 namespace conelane {
 namespace {
@@ -13,52 +17,87 @@ double square(double value) {
 }
 
 struct PlacedEdge {
+    std::size_t number;
     Point middle;
     Point direction;  ///< unit length; zero for an edge of zero length
     double length_m;
 };
 
-PlacedEdge placed(const Scene& scene, const ProblemEdge& edge) {
+PlacedEdge placed(const Scene& scene, const ProblemEdge& edge, std::size_t number) {
     const Point& from = scene.cones[edge.i].position;
     const Point& to = scene.cones[edge.j].position;
     const double length = (to - from).norm();
-    return {0.5 * (from + to), length > 0.0 ? Point((to - from) / length) : Point(0.0, 0.0), length};
+    return {number, 0.5 * (from + to), length > 0.0 ? Point((to - from) / length) : Point(0.0, 0.0), length};
 }
 
-/// Of two edges. `along` and `across` belong to the way between their midpoints, seen from the first edge.
-using CostOfFacing = double (*)(const RldParameters& p, double along_squared, double across, double sine,
-                                double longer_m);
+bool share_a_cone(const ProblemEdge& a, const ProblemEdge& b) {
+    return a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j;
+}
 
-/// By edge: the measure of the edge that faces it best; 1 if no midpoint is within `reach_m`.
-std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edges, const RldParameters& p,
-                           double reach_m, CostOfFacing cost_of,
-                           const std::function<bool(std::size_t)>& stop) {
-    const auto may_face = [](const ProblemEdge& edge) { return !edge.high_cost && !edge.gap; };
+/// Edges by where their midpoints are: in strips of the plane, and along each strip.
+class PlacedEdges {
+  public:
+    PlacedEdges(std::vector<PlacedEdge> edges, double strip_m) : edges_(std::move(edges)), strip_m_(strip_m) {
+        std::ranges::sort(edges_, {}, [this](const PlacedEdge& edge) {
+            return std::tuple(strip(edge.middle), edge.middle.x(), edge.number);
+        });
+    }
+
+    /// Those of a square of two strips' widths around the place, as a list for each strip that it meets.
+    [[nodiscard]] std::array<std::span<const PlacedEdge>, 3> around(const Point& place) const {
+        std::array<std::span<const PlacedEdge>, 3> lists;
+        for (int k = 0; k < 3; ++k) {
+            const double in_strip = strip(place) + k - 1;
+            const auto key = [this](const PlacedEdge& edge) {
+                return std::pair(strip(edge.middle), edge.middle.x());
+            };
+            const auto begin =
+                std::ranges::lower_bound(edges_, std::pair(in_strip, place.x() - strip_m_), {}, key);
+            const auto end =
+                std::ranges::upper_bound(edges_, std::pair(in_strip, place.x() + strip_m_), {}, key);
+            lists[static_cast<std::size_t>(k)] = {begin, end};
+        }
+        return lists;
+    }
+
+  private:
+    [[nodiscard]] double strip(const Point& place) const { return std::floor(place.y() / strip_m_); }
+
+    std::vector<PlacedEdge> edges_;
+    double strip_m_;
+};
+
+/// By edge: the measure of the edge that faces it best, at most 1. `cost_of` gets along_squared, across, sine
+/// and longer_m of two edges; `along` and `across` belong to the way between their midpoints, seen from the
+/// first edge. It is at least 1 if the midpoints are farther apart than `reach_m`.
+template <typename CostOf>
+std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edges, double reach_m,
+                           const CostOf& cost_of, const std::function<bool(std::size_t)>& stop) {
     std::vector<PlacedEdge> places;
     places.reserve(edges.size());
-    for (const ProblemEdge& edge : edges) places.push_back(placed(scene, edge));
+    for (std::size_t e = 0; e < edges.size(); ++e) places.push_back(placed(scene, edges[e], e));
+    std::vector<PlacedEdge> may_face;
+    std::ranges::copy_if(places, std::back_inserter(may_face), [edges](const PlacedEdge& place) {
+        return !edges[place.number].high_cost && !edges[place.number].gap;
+    });
+    const PlacedEdges facers(std::move(may_face), reach_m);
     std::vector<double> costs(edges.size(), 1.0);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        if (stop && stop(edges.size() - e)) return costs;
-        const ProblemEdge& edge = edges[e];
-        for (std::size_t other = e + 1; other < edges.size(); ++other) {
-            const Point way = places[other].middle - places[e].middle;
-            const double distance_squared = way.squaredNorm();
-            if (distance_squared > square(reach_m)) continue;
-            const ProblemEdge& beside = edges[other];
-            if (edge.i == beside.i || edge.i == beside.j || edge.j == beside.i || edge.j == beside.j)
-                continue;
-            const double sine = cross(places[e].direction, places[other].direction);
-            const double longer_m = places[e].length_m - places[other].length_m;
-            const auto cost = [&](const Point& direction) {
-                const double across = cross(direction, way);
-                const double along_squared = std::max(0.0, distance_squared - square(across));
-                return cost_of(p, along_squared, across, sine, longer_m);
-            };
-            if (may_face(beside)) costs[e] = std::min(costs[e], cost(places[e].direction));
-            if (may_face(edge)) costs[other] = std::min(costs[other], cost(places[other].direction));
+    for (const PlacedEdge& place : places) {
+        if (place.direction.isZero()) continue;
+        const auto lists = facers.around(place.middle);
+        if (stop && stop(lists[0].size() + lists[1].size() + lists[2].size())) return costs;
+        double least = 1.0;
+        for (const std::span<const PlacedEdge> list : lists) {
+            for (const PlacedEdge& facer : list) {
+                const Point way = facer.middle - place.middle;
+                const double across = cross(place.direction, way);
+                const double along_squared = std::max(0.0, way.squaredNorm() - square(across));
+                const double cost = cost_of(along_squared, across, cross(place.direction, facer.direction),
+                                            place.length_m - facer.length_m);
+                if (cost < least && !share_a_cone(edges[place.number], edges[facer.number])) least = cost;
+            }
         }
-        if (places[e].direction.isZero()) costs[e] = 1.0;
+        costs[place.number] = least;
     }
     return costs;
 }
@@ -66,30 +105,27 @@ std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edge
 }  // namespace
 
 std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
-                                 const RldParameters& parameters,
-                                 const std::function<bool(std::size_t)>& stop) {
-    const auto cost = [](const RldParameters& p, double along_squared, double across, double sine,
-                         double longer_m) {
+                                 const RldParameters& p, const std::function<bool(std::size_t)>& stop) {
+    const auto cost = [&p](double along_squared, double across, double sine, double longer_m) {
         const double unlike = square(sine / p.theta_v) + square(longer_m / p.d_l);
         return (along_squared + square(std::abs(across) - p.d_w)) / square(p.d_v) + unlike;
     };
-    return facing(scene, edges, parameters, parameters.d_w + parameters.d_v, cost, stop);
+    return facing(scene, edges, p.d_w + p.d_v, cost, stop);
 }
 
 std::vector<double> facing_at_any_width(const Scene& scene, std::span<const ProblemEdge> edges,
                                         const std::function<bool(std::size_t)>& stop) {
-    constexpr double kAlong_m = 4.0;
-    constexpr double kWidest_m = 5.5;
     constexpr double kReach_m = 7.7;  // beyond it the cost is above 1
-    const auto cost = [](const RldParameters& /*p*/, double along_squared, double across, double sine,
-                         double /*longer_m*/) {
+    const auto cost = [](double along_squared, double across, double sine, double /*longer_m*/) {
+        constexpr double kAlong_m = 4.0;
         constexpr double kNarrowest_m = 2.5;
+        constexpr double kWidest_m = 5.5;
         constexpr double kSine = 0.6;
         const double width = std::abs(across);
         const double off = std::max(0.0, width - kWidest_m) + std::max(0.0, kNarrowest_m - width);
         return along_squared / square(kAlong_m) + square(off) + square(sine / kSine);
     };
-    return facing(scene, edges, {}, kReach_m, cost, stop);
+    return facing(scene, edges, kReach_m, cost, stop);
 }
 
 double unevenness(double before_m, double after_m, const RldParameters& parameters) {

@@ -113,6 +113,9 @@ struct WindowTuning {
     int first_step = 2;               ///< of the root's ascent: row "windows from the third step on"
     int huge_graph_arcs = 1000;       ///< arcs of a graph whose windows come before the first step
     double work_per_huge_arc = 50e3;  ///< at once, for each arc above that number: there the bound comes late
+    /// Beams in succession that bring no new pair: after them, nothing more is done at once. Row "windows of
+    /// huge graphs end after two beams without a new pair".
+    int max_idle_beams = 2;
 
     // Their share of the work: row "windows from the third step on, with a third of the work".
     double little_work = 10e6;  ///< work on bounds, up to which the first share holds

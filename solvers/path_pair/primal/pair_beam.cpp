@@ -10,25 +10,52 @@ namespace {
 constexpr int kMaxLead = 2;  ///< arcs that a leg may be ahead
 constexpr std::size_t kMaxFirstSteps = 50'000;
 constexpr std::size_t kWorkPerStep = 50;
+constexpr std::size_t kStepsPerClock = 64;
+
+// The order of a heap whose top is the cheapest step.
+constexpr auto kDearer = [](const auto& a, const auto& b) {
+    return std::tie(a.cost, a.last, a.label) > std::tie(b.cost, b.last, b.label);
+};
 
 }  // namespace
 
-void PairBeam::run(const ArcGraph& graph, const LegSystem& system, const Limits& limits, Incumbent& incumbent,
-                   SearchClock& clock) {
+/// All pairs of first arcs, or the cheapest ones where they are many.
+void PairBeam::begin(const ArcGraph& graph, const LegSystem& system, SearchClock& clock) {
     graph_ = &graph;
     system_ = &system;
-    limits_ = limits;
     edge_words_ = (to_index(graph.edge_count()) + 63) / 64;
     words_ = edge_words_ + (to_index(graph.cone_count()) + 63) / 64;
+    first_steps_.clear();
+    for (int a = 0; a < graph_->arc_count(); ++a) {
+        if (!starts(a)) continue;
+        if (clock.out_of_time(to_index(graph_->arc_count()))) break;
+        for (int b = a + 1; b < graph_->arc_count(); ++b) {
+            const bool meet = graph_->tail(a) == graph_->tail(b) || graph_->tail(a) == graph_->head(b) ||
+                              graph_->head(a) == graph_->tail(b) || graph_->head(a) == graph_->head(b);
+            if (!starts(b) || meet || graph_->incompatible(a / 2, b / 2)) continue;
+            first_steps_.push_back({-1, 0, {a, b}, graph_->cost(a / 2) + graph_->cost(b / 2)});
+        }
+        if (first_steps_.size() < kMaxFirstSteps) continue;
+        const std::size_t kept = kMaxFirstSteps / 2;
+        std::nth_element(first_steps_.begin(), first_steps_.begin() + static_cast<std::ptrdiff_t>(kept),
+                         first_steps_.end(),
+                         [](const Step& one, const Step& other) { return kDearer(other, one); });
+        first_steps_.resize(kept);
+    }
+    clock.out_of_time(kWorkPerStep * first_steps_.size());
+    std::ranges::make_heap(first_steps_, kDearer);
+    first_steps_heaped_ = first_steps_.size();
+}
+
+void PairBeam::run(const Limits& limits, Incumbent& incumbent, SearchClock& clock) {
+    limits_ = limits;
     labels_.clear();
     lost_next_.clear();
     next_ = 0;
-    add_first_steps(clock);
     int best = -1;
     double best_cost = incumbent.cutoff();
-    clock.out_of_time(kWorkPerStep * steps_.size());
-    while (!steps_.empty() && !clock.struck()) {
-        take_cheapest_steps(clock);
+    take_cheapest_first_steps(clock);
+    while (labels_.size() > next_ && !clock.struck()) {
         steps_.clear();
         level_ = std::exchange(next_, labels_.size());
         std::swap(lost_, lost_next_);
@@ -43,31 +70,9 @@ void PairBeam::run(const ArcGraph& graph, const LegSystem& system, const Limits&
             add_steps(static_cast<int>(l), lost(l - level_));
             if (clock.out_of_time(kWorkPerStep * (steps_.size() - steps))) break;
         }
+        take_cheapest_steps(clock);
     }
     if (best >= 0) offer(best, incumbent);
-}
-
-/// All pairs of first arcs, or the cheapest ones where they are many.
-void PairBeam::add_first_steps(SearchClock& clock) {
-    const auto cheaper = [](const Step& a, const Step& b) {
-        return std::tie(a.cost, a.last) < std::tie(b.cost, b.last);
-    };
-    steps_.clear();
-    for (int a = 0; a < graph_->arc_count(); ++a) {
-        if (!starts(a)) continue;
-        if (clock.out_of_time(to_index(graph_->arc_count()))) return;
-        for (int b = a + 1; b < graph_->arc_count(); ++b) {
-            const bool meet = graph_->tail(a) == graph_->tail(b) || graph_->tail(a) == graph_->head(b) ||
-                              graph_->head(a) == graph_->tail(b) || graph_->head(a) == graph_->head(b);
-            if (!starts(b) || meet || graph_->incompatible(a / 2, b / 2)) continue;
-            steps_.push_back({-1, 0, {a, b}, graph_->cost(a / 2) + graph_->cost(b / 2)});
-        }
-        if (steps_.size() < kMaxFirstSteps) continue;
-        const std::size_t kept = kMaxFirstSteps / 2;
-        std::nth_element(steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(kept), steps_.end(),
-                         cheaper);
-        steps_.resize(kept);
-    }
 }
 
 void PairBeam::add_steps(int l, const std::uint64_t* lost) {
@@ -83,36 +88,58 @@ void PairBeam::add_steps(int l, const std::uint64_t* lost) {
     }
 }
 
-void PairBeam::take_cheapest_steps(SearchClock& clock) {
-    constexpr std::size_t kStepsPerClock = 64;
-    // A heap, as few of many steps are taken: the cheapest one is in frontier.
-    const auto dearer = [](const Step& a, const Step& b) {
-        return std::tie(a.cost, a.last, a.label) > std::tie(b.cost, b.last, b.label);
-    };
-    std::make_heap(steps_.begin(), steps_.end(), dearer);
-    at_cone_.assign(to_index(graph_->cone_count()), 0);
-    for (auto end = steps_.end(); end != steps_.begin() && labels_.size() - next_ < limits_.width;) {
-        const auto left = static_cast<std::size_t>(end - steps_.begin());
-        if (left % kStepsPerClock == 0 && clock.out_of_time()) return;
-        std::pop_heap(steps_.begin(), end, dearer);
-        const Step& step = *--end;
-        int& at_first = at_cone_[to_index(graph_->head(step.last[0]))];
-        int& at_second = at_cone_[to_index(graph_->head(step.last[1]))];
-        if (at_first + at_second >= limits_.max_at_cone) continue;
-        const bool seen = std::any_of(labels_.begin() + static_cast<std::ptrdiff_t>(next_), labels_.end(),
-                                      [&](const Label& label) { return label.last == step.last; });
-        if (seen) continue;
-        ++at_first;
-        ++at_second;
-        add_label(step);
+void PairBeam::take_cheapest_first_steps(SearchClock& clock) {
+    begin_level();
+    for (std::size_t step = first_steps_.size(); step > 0 && !is_full(); --step) {
+        if (step == first_steps_heaped_) {  // an earlier beam did not get so far
+            if (step % kStepsPerClock == 0 && clock.out_of_time()) return;
+            std::pop_heap(first_steps_.begin(), first_steps_.begin() + static_cast<std::ptrdiff_t>(step),
+                          kDearer);
+            --first_steps_heaped_;
+        }
+        take(first_steps_[step - 1]);
     }
 }
 
+void PairBeam::take_cheapest_steps(SearchClock& clock) {
+    begin_level();
+    // A heap, as few of many steps are taken.
+    std::ranges::make_heap(steps_, kDearer);
+    for (auto end = steps_.end(); end != steps_.begin() && !is_full();) {
+        const auto left = static_cast<std::size_t>(end - steps_.begin());
+        if (left % kStepsPerClock == 0 && clock.out_of_time()) return;
+        std::pop_heap(steps_.begin(), end, kDearer);
+        take(*--end);
+    }
+}
+
+void PairBeam::begin_level() {
+    at_cone_.assign(to_index(graph_->cone_count()), 0);
+    newest_at_arc_.assign(to_index(graph_->arc_count()), -1);
+}
+
+void PairBeam::take(const Step& step) {
+    int& at_first = at_cone_[to_index(graph_->head(step.last[0]))];
+    int& at_second = at_cone_[to_index(graph_->head(step.last[1]))];
+    if (at_first + at_second >= limits_.max_at_cone || is_taken(step.last)) return;
+    ++at_first;
+    ++at_second;
+    add_label(step);
+}
+
+bool PairBeam::is_taken(const std::array<int, 2>& last) const {
+    int l = newest_at_arc_[to_index(last[0])];
+    while (l >= 0 && labels_[to_index(l)].last[1] != last[1]) l = labels_[to_index(l)].older_at_arc;
+    return l >= 0;
+}
+
 void PairBeam::add_label(const Step& step) {
-    Label label{step.label, step.last, {1, 1}, 0, step.cost};
+    int& newest = newest_at_arc_[to_index(step.last[0])];
+    Label label{step.label, std::exchange(newest, static_cast<int>(labels_.size())), step.last, {1, 1}, 0,
+                step.cost};
     lost_next_.resize(lost_next_.size() + words_, 0);
     std::uint64_t* const row = lost_next_.data() + (lost_next_.size() - words_);
-    const auto take = [&](int arc) {
+    const auto take_arc = [&](int arc) {
         take_edge(arc, row);
         take_cone(graph_->head(arc), row);
         if (graph_->along_heading(arc / 2)) label.along_heading = std::min(2, label.along_heading + 1);
@@ -120,7 +147,7 @@ void PairBeam::add_label(const Step& step) {
     if (step.label < 0) {
         for (const int arc : step.last) {
             take_cone(graph_->tail(arc), row);
-            take(arc);
+            take_arc(arc);
         }
     } else {
         const Label& before = labels_[to_index(step.label)];
@@ -128,7 +155,7 @@ void PairBeam::add_label(const Step& step) {
         label.length = before.length;
         label.along_heading = before.along_heading;
         ++label.length[to_index(step.leg)];
-        take(step.last[to_index(step.leg)]);
+        take_arc(step.last[to_index(step.leg)]);
     }
     labels_.push_back(label);
 }

@@ -23,13 +23,16 @@ class PairBeam {
         std::size_t width;  ///< number of beginnings that go on
         int max_at_cone;    ///< among these, number of legs that end at the same cone
     };
-    /// Offers the incumbent the best pair that is met. Precondition: the legs of the system are alike.
-    void run(const ArcGraph& graph, const LegSystem& system, const Limits& limits, Incumbent& incumbent,
-             SearchClock& clock);
+    /// For one search; graph and system must outlive it. Lists the pairs of first arcs, which all its beams
+    /// begin with. Precondition: the legs of the system are alike.
+    void begin(const ArcGraph& graph, const LegSystem& system, SearchClock& clock);
+    /// Offers the incumbent the best pair that is met.
+    void run(const Limits& limits, Incumbent& incumbent, SearchClock& clock);
 
   private:
     struct Label {
         int before;                 ///< the label that it continues, -1 for the first of a chain
+        int older_at_arc;           ///< the label taken before it with the same arc last[0], or -1
         std::array<int, 2> last;    ///< arcs
         std::array<int, 2> length;  ///< arcs of each leg
         int along_heading;          ///< edges, at most 2
@@ -46,9 +49,13 @@ class PairBeam {
         return system_->kinds[0].start[to_index(graph_->tail(arc))] != 0;
     }
     [[nodiscard]] std::uint64_t* lost(std::size_t number) { return lost_.data() + number * words_; }
-    void add_first_steps(SearchClock& clock);
     void add_steps(int label, const std::uint64_t* lost);
+    void take_cheapest_first_steps(SearchClock& clock);
     void take_cheapest_steps(SearchClock& clock);
+    void begin_level();
+    [[nodiscard]] bool is_full() const { return labels_.size() - next_ >= limits_.width; }
+    void take(const Step& step);
+    [[nodiscard]] bool is_taken(const std::array<int, 2>& last) const;
     void add_label(const Step& step);
     [[nodiscard]] bool is_lane(const Label& label) const;
     [[nodiscard]] bool allows(const std::uint64_t* lost, int arc) const;
@@ -65,7 +72,10 @@ class PairBeam {
     std::size_t level_ = 0;  ///< first label of those that go on
     std::size_t next_ = 0;   ///< first label with one arc more
     std::vector<Step> steps_;
-    std::vector<int> at_cone_;  ///< legs of the new labels that end there
+    std::vector<Step> first_steps_;       ///< a heap, and behind it what was taken off it, the last one first
+    std::size_t first_steps_heaped_ = 0;  ///< size of the heap
+    std::vector<int> at_cone_;            ///< legs of the new labels that end there
+    std::vector<int> newest_at_arc_;      ///< by last[0]: the new label that was taken last, or -1
     std::vector<std::uint64_t>
         lost_;  ///< by label from level_ on: edges that are excluded, cones that are taken
     std::vector<std::uint64_t> lost_next_;  ///< by label from next_ on

@@ -25,8 +25,10 @@ void IncumbentImprover::begin(const LegSystem& system, std::span<const char> sta
     phase_ = 0;
     start_costs_.clear();
     own_work_ = 0;
+    idle_beams_ = 0;
     aim_ = {};
     has_whole_ = false;
+    has_beam_ = false;
 }
 
 void IncumbentImprover::improve(const ResidualGraph& alive, double bound) {
@@ -54,8 +56,10 @@ bool IncumbentImprover::may_work(double gap, std::int64_t own_work) const {
     const auto other = static_cast<double>(clock_->total_work() - own_work);
     const double wide = std::clamp((gap - t.narrow_gap) / (t.wide_gap - t.narrow_gap),
                                    t.min_share_of_more_work / t.share_of_more_work, 1.0);
-    const double allowed = t.work_per_huge_arc * std::max(0, graph_.arc_count() - t.huge_graph_arcs) +
-                           t.share_of_little_work * std::min(other, t.little_work) +
+    const double at_once = idle_beams_ < t.max_idle_beams
+                               ? t.work_per_huge_arc * std::max(0, graph_.arc_count() - t.huge_graph_arcs)
+                               : 0.0;
+    const double allowed = at_once + t.share_of_little_work * std::min(other, t.little_work) +
                            t.share_of_more_work * wide * std::max(0.0, other - t.little_work);
     return phase_ < t.phases.size() && static_cast<double>(own_work) + t.min_work < allowed;
 }
@@ -94,8 +98,14 @@ void IncumbentImprover::begin_phase() {
         pair_ = incumbent_;
     } else {
         pair_.reset(graph_, 0.0);
-        beam_.run(graph_, *system_, {phase.beam_width, phase.beam_max_at_cone}, pair_, *clock_);
-        if (!pair_.found() || std::ranges::find(start_costs_, pair_.cutoff()) != start_costs_.end()) return;
+        if (!has_beam_) beam_.begin(graph_, *system_, *clock_);
+        has_beam_ = true;
+        beam_.run({phase.beam_width, phase.beam_max_at_cone}, pair_, *clock_);
+        if (!pair_.found() || std::ranges::find(start_costs_, pair_.cutoff()) != start_costs_.end()) {
+            ++idle_beams_;
+            return;
+        }
+        idle_beams_ = 0;
         start_costs_.push_back(pair_.cutoff());
     }
     window_.restart(phase.window_arcs);

@@ -62,6 +62,7 @@ class IncumbentImprover {
     bool has_pair_ = false;
     std::optional<std::size_t> new_window_arcs_;  ///< for the pair, if its windows have not begun
     std::size_t phase_ = 0;
+    int idle_beams_ = 0;               ///< the last ones, which brought no new pair
     std::vector<double> start_costs_;  ///< of pairs from beams
     std::int64_t own_work_ = 0;        ///< of the clock, up to now
     NodeAscent::Aim aim_;
@@ -70,6 +71,7 @@ class IncumbentImprover {
     bool has_whole_ = false;
     IncumbentWindow window_;
     PairBeam beam_;
+    bool has_beam_ = false;  ///< begun for this search
     Decisions no_decisions_;
     NodeAscent ascent_;
     Node node_;

@@ -111,9 +111,33 @@ TEST(PathPairBeam, FindsTheStraightLane) {
     const LaneGraphProblem problem = tests::straight_lane_problem();
     Graph s(problem);
     PairBeam beam;
-    beam.run(s.arcs, s.system, {1, 2}, s.incumbent, s.clock);
+    beam.begin(s.arcs, s.system, s.clock);
+    beam.run({1, 2}, s.incumbent, s.clock);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(problem, {}).objective, 1e-9);
+}
+
+/// A beam does not depend on the beams that took first steps before it.
+TEST(PathPairBeam, IsTheSameAfterOtherBeams) {
+    int found = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Graph s(make_problem(tests::random_scene(seed, 30), {}));
+        const auto cost = [&](PairBeam& beam, std::size_t width) {
+            s.incumbent.reset(s.arcs, 1e6);
+            beam.run({width, 4}, s.incumbent, s.clock);
+            return s.incumbent.cutoff();
+        };
+        PairBeam beam;
+        beam.begin(s.arcs, s.system, s.clock);
+        for (const std::size_t width : {2, 64, 1, 8}) {
+            PairBeam fresh;
+            fresh.begin(s.arcs, s.system, s.clock);
+            EXPECT_EQ(cost(beam, width), cost(fresh, width));
+            found += s.incumbent.found() ? 1 : 0;
+        }
+    }
+    EXPECT_GT(found, 40);
 }
 
 TEST(PathPairBeam, FindsLaneGraphsAndOftenTheBest) {
@@ -127,7 +151,8 @@ TEST(PathPairBeam, FindsLaneGraphsAndOftenTheBest) {
         Graph s(problem);
         s.incumbent.reset(s.arcs, 1e6);
         PairBeam beam;
-        beam.run(s.arcs, s.system, {64, 16}, s.incumbent, s.clock);
+        beam.begin(s.arcs, s.system, s.clock);
+        beam.run({64, 16}, s.incumbent, s.clock);
         if (!best.objective) {
             EXPECT_FALSE(s.incumbent.found());
             continue;
@@ -148,7 +173,8 @@ TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Graph s(make_problem(tests::random_scene(seed, 30), {}));
         PairBeam beam;
-        beam.run(s.arcs, s.system, {16, 4}, s.incumbent, s.clock);
+        beam.begin(s.arcs, s.system, s.clock);
+        beam.run({16, 4}, s.incumbent, s.clock);
         if (!s.incumbent.found()) continue;
         const Legs& legs = s.incumbent.legs();
         IncumbentWindow window;
