@@ -160,11 +160,26 @@ class Verification {
 
     [[nodiscard]] double spacing_cost(double length) const { return fourth((length - p_.d_e) / p_.d_t); }
 
-    /// Whether an edge that exceeds s_crit is allowed: at one of its ends an edge within s_crit goes
-    /// straight on.
+    /// Whether no cone stands on an edge over a gap, see d_clear.
+    [[nodiscard]] bool is_clear(const Edge& edge) const {
+        const Point along = (position(edge.j) - position(edge.i)).normalized();
+        for (std::size_t cone = 0; cone < scene_.cones.size(); ++cone) {
+            if (cone == edge.i || cone == edge.j) continue;
+            const Point from_i = position(cone) - position(edge.i);
+            const double past_i = along.dot(from_i);
+            const double before_j = along.dot(position(edge.j) - position(cone));
+            if (std::abs(cross(along, from_i)) < p_.d_clear - kTieTolerance &&
+                std::min(past_i, before_j) > p_.d_clear + kTieTolerance)
+                return false;
+        }
+        return true;
+    }
+
+    /// Whether an edge that exceeds s_crit is allowed: no cone stands on it, and at one of its ends an edge
+    /// within s_crit goes straight on.
     [[nodiscard]] bool is_over_gap(const Edge& edge) const {
         const double length = length_of(edge);
-        if (length > p_.d_gap + kTieTolerance || length <= p_.d_e) return false;
+        if (length > p_.d_gap + kTieTolerance || length <= p_.d_e || !is_clear(edge)) return false;
         for (const auto& [from, to] : {std::pair{edge.i, edge.j}, std::pair{edge.j, edge.i}}) {
             for (std::size_t on = 0; on < scene_.cones.size(); ++on) {
                 if (on == from || on == to || length_of({to, on}) < kMinEdge) continue;

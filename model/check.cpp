@@ -257,7 +257,22 @@ class Checker {
             }
             return false;
         };
-        return goes_on(edge.i, edge.j) || goes_on(edge.j, edge.i);
+        return is_clear(edge) && (goes_on(edge.i, edge.j) || goes_on(edge.j, edge.i));
+    }
+    /// Whether no cone stands on an edge over a gap: beside the part of it that d_clear at both ends leaves.
+    [[nodiscard]] bool is_clear(const Edge& edge) const {
+        const Vector v = position(edge.j) - position(edge.i);
+        const Real apart = length(v);
+        const auto margin = static_cast<Real>(p_.d_clear);
+        for (std::size_t cone = 0; cone < scene_.cones.size(); ++cone) {
+            if (cone == edge.i || cone == edge.j) continue;
+            const Vector from_i = position(cone) - position(edge.i);
+            const Vector from_j = position(cone) - position(edge.j);
+            if (std::abs(wedge(v, from_i)) < (margin - kTie) * apart &&
+                dot(v, from_i) > (margin + kTie) * apart && -dot(v, from_j) > (margin + kTie) * apart)
+                return false;
+        }
+        return true;
     }
 
     /// An edge that may be part of a boundary, so it may face another edge.

@@ -137,8 +137,24 @@ bool is_straight(const Scene& scene, std::size_t before, std::size_t middle, std
     return within(std::numbers::pi - angle, p.theta_gap);
 }
 
-/// Allows edges over gaps: longer than s_crit allows, at most d_gap, and at one end or both a listed edge
-/// continues nearly straight. Precondition: all edges within s_crit are listed, and no gaps.
+/// Whether no other cone stands on an edge: nearer to its line than d_clear, and farther from both ends,
+/// along the line, than that.
+bool is_clear(const Scene& scene, std::size_t i, std::size_t j, std::span<const std::size_t> near_i,
+              const RldParameters& p) {
+    const Point& from = scene.cones[i].position;
+    const Point v = scene.cones[j].position - from;
+    const double length = v.norm();
+    return std::ranges::none_of(near_i, [&](std::size_t cone) {
+        const Point way = scene.cones[cone].position - from;
+        const double along = way.dot(v) / length;
+        return std::abs(cross(v, way)) / length < p.d_clear - kTieTolerance &&
+               std::min(along, length - along) > p.d_clear + kTieTolerance;
+    });
+}
+
+/// Allows edges over gaps: longer than s_crit allows, at most d_gap, no cone stands on them, and at one end
+/// or both a listed edge continues nearly straight. Precondition: all edges within s_crit are listed, and no
+/// gaps.
 void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, LaneGraphProblem& problem,
                Limits& limits) {
     const RldParameters& p = problem.parameters;
@@ -155,14 +171,21 @@ void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, Lane
                                    [&](std::size_t on) { return is_straight(scene, from, to, on, p); });
     };
     std::vector<ProblemEdge> gaps;
+    std::vector<std::size_t> near_i;  // what stands on an edge is nearer than its other end
     for (std::size_t i = 0; i < n; ++i) {
-        if (limits.stop(problem, 10 * (n - i))) return;
+        if (limits.stop(problem, 10 * n)) return;
+        near_i.clear();
+        for (std::size_t cone = 0; p.d_clear > 0.0 && cone < n; ++cone) {
+            const double distance = (scene.cones[cone].position - scene.cones[i].position).norm();
+            if (distance > 0.0 && within(distance, p.d_gap)) near_i.push_back(cone);
+        }
         for (std::size_t j = i + 1; j < n; ++j) {
             const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
             if (!within(distance, p.d_gap) || distance <= p.d_e ||
-                within(fourth_power((distance - p.d_e) / p.d_t), p.s_crit) ||
-                (!goes_on(i, j) && !goes_on(j, i)))
+                within(fourth_power((distance - p.d_e) / p.d_t), p.s_crit))
                 continue;
+            if (limits.stop(problem, near_i.size())) return;
+            if (!is_clear(scene, i, j, near_i, p) || (!goes_on(i, j) && !goes_on(j, i))) continue;
             ProblemEdge edge = make_problem_edge(scene, heading, p, i, j, distance);
             edge.high_cost = false;
             edge.gap = true;

@@ -36,7 +36,7 @@ constexpr std::array<RldParameterField, 15> kFields{{
     {"t_crit", &P::t_crit, "1", 0.0, kMaxWeight, "largest angle cost"},
 }};
 
-constexpr std::array<RldParameterField, 10> kExtraFields{{
+constexpr std::array<RldParameterField, 11> kExtraFields{{
     {"w_color", &P::w_color, "1", 0.0, kMaxWeight, "weight of the colour cost"},
     {"w_u", &P::w_u, "1", 0.0, kMaxWeight, "weight of uneven spacing"},
     {"w_v", &P::w_v, "1", 0.0, kMaxWeight, "weight of the facing cost"},
@@ -47,6 +47,8 @@ constexpr std::array<RldParameterField, 10> kExtraFields{{
     {"d_l", &P::d_l, "m", kMinThreshold, kMaxLength_m, "facing length threshold"},
     {"d_gap", &P::d_gap, "m", 0.0, kMaxGap_m, "largest length of an edge over a gap"},
     {"theta_gap", &P::theta_gap, "rad", 0.0, std::numbers::pi, "largest angle at an edge over a gap"},
+    {"d_clear", &P::d_clear, "m", 0.0, kMaxLength_m,
+     "distance of an edge over a gap from the cones beside it"},
 }};
 
 void require_in_range(const RldParameterField& field, const RldParameters& parameters) {

@@ -237,6 +237,7 @@ void draw_learned_costs(RldParameters& parameters, Draw& draw) {
     if (draw.chance(0.5)) {
         parameters.d_gap = rounded(draw.real(5.0, 12.0));
         parameters.theta_gap = rounded(draw.real(0.1, 1.0));
+        if (draw.chance(0.5)) parameters.d_clear = rounded(draw.real(0.1, 1.0));
     }
     LearnedCosts costs = LearnedCosts::zero(draw.chance(0.5) ? kUnits : 0);
     for (LearnedNetwork& network : costs.networks) {

@@ -132,13 +132,15 @@ RldParameters rld_learning_parameters() {
           &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n}) {
         parameters.*weight = 0.0;
     }
-    parameters.d_min = 2.5;
+    parameters.t_crit = 9.0;
+    parameters.d_min = 2.0;
     parameters.d_h = 8.0;
     parameters.theta_heading = 1.4;
     parameters.d_near = 8.0;
     parameters.d_max = 7.0;
     parameters.d_gap = 11.5;
-    parameters.theta_gap = 0.7;
+    parameters.theta_gap = 1.1;
+    parameters.d_clear = 0.5;
     return parameters;
 }
 

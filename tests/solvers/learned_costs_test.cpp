@@ -275,6 +275,19 @@ TEST(Gaps, GoStraightOnAtAnEnd) {
     EXPECT_TRUE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}}), parameters, 0, 1))
         << "the first edge in view";
     EXPECT_FALSE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}}), parameters, 0, 1)) << "nothing around it";
+    // A cone that stands on it forbids it; one beside it, or near its end, does not.
+    parameters.d_clear = 0.5;
+    const auto with_cone = [](double x, double y) {
+        return scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {x, y}});
+    };
+    EXPECT_FALSE(has_gap(with_cone(7.0, 1.9), parameters, 1, 2));
+    EXPECT_TRUE(has_gap(with_cone(7.0, 2.1), parameters, 1, 2));
+    EXPECT_TRUE(has_gap(with_cone(4.6, 1.6), parameters, 1, 2));
+    EXPECT_TRUE(has_gap(with_cone(10.2, 1.4), parameters, 1, 2));
+    EXPECT_FALSE(has_gap(with_cone(10.0, 1.4), parameters, 1, 2));
+    parameters.d_clear = 0.3;
+    EXPECT_TRUE(has_gap(with_cone(7.0, 1.9), parameters, 1, 2));
+    parameters.d_clear = 0.0;
     // A turn at its end may not exceed theta_gap, even if t_crit allows more.
     parameters.theta_gap = 0.4;
     const Scene forked = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {13.0, 3.5}});

@@ -289,6 +289,7 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
         const Scene scene = tests::random_scene(seed, 6 + seed % 4);
         RldParameters parameters;
         parameters.d_gap = 9.0;
+        parameters.d_clear = 0.5;
         parameters.theta_gap = 0.6;
         const RldReport plain = solve(scene, parameters);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);

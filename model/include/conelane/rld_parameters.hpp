@@ -53,6 +53,7 @@ struct RldParameters {
     // Edges over gaps, where a cone of a boundary is missing; off by default.
     double d_gap = 0.0;      ///< largest length of an edge that s_crit forbids [m]
     double theta_gap = 0.4;  ///< largest angle from straight on at the ends of such an edge [rad]
+    double d_clear = 0.0;    ///< no cone between the ends of such an edge is nearer to it [m]
 
     /// Costs from learned_costs.hpp, added to those above; none by default. Never changed once it is here.
     std::shared_ptr<const LearnedCosts> learned_costs = {};

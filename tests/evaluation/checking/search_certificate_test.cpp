@@ -80,6 +80,7 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
         const Scene scene = tests::random_scene(seed, 10);
         RldParameters parameters;
         parameters.d_gap = 9.0;
+        parameters.d_clear = 0.5;
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
         if (!certificate.lane_graph) continue;

@@ -353,6 +353,7 @@ TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
         const Scene scene = colored_scene(seed, 14);
         RldParameters parameters;
         parameters.d_gap = 9.0;
+        parameters.d_clear = 0.5;
         parameters.theta_gap = 0.5;
         parameters.w_color = 0.3;
         parameters.use_confidence = true;
