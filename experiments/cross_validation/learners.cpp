@@ -191,14 +191,19 @@ DetectorMaker make_astar_lane(const fs::path& folder, const RunOptions& options)
 
 // The weights of the RLD objective with the costs of the lane's shape.
 
-RldParameters tuned_shape(const Evaluation& evaluation, const LearningOptions& options) {
+RldParameters tuned_shape(const LearningOptions& options, const EvaluationOptions& solved) {
+    const Evaluation evaluation(scenes_to_tune_on(options), solved);
     return tune([&](const RldParameters& parameters) { return evaluation(parameters); },
                 with_shape_costs(RldParameters{}), {1, options.evaluations, options.scenes.seed})
         .parameters;
 }
 
-/// With the best w_color; of equal ones the smallest.
-RldParameters with_color_weight(const RldParameters& parameters, const Evaluation& evaluation) {
+/// With the best w_color; of equal ones the smallest. Slow scenes have no value, but do not spoil the others:
+/// dense ones are slow with any weight.
+RldParameters with_color_weight(const RldParameters& parameters, const LearningOptions& options,
+                                EvaluationOptions solved) {
+    solved.max_timed_out = 1.0;
+    const Evaluation evaluation(scenes_to_tune_on(options), solved);
     RldParameters best = parameters;
     double best_value = -1.0;
     for (const double weight : kColorWeights) {
@@ -218,11 +223,10 @@ void learn_shape(const LearningOptions& options, const fs::path& folder) {
     EvaluationOptions solved;
     solved.objective = TuningObjective::usable;
     solved.threads = options.scenes.threads;
-    const Evaluation evaluation(scenes_to_tune_on(options), solved);
     RldParameters parameters = options.without_colors.empty()
-                                   ? tuned_shape(evaluation, options)
+                                   ? tuned_shape(options, solved)
                                    : read_rld_parameters(options.without_colors / kShape);
-    if (options.scenes.with_color) parameters = with_color_weight(parameters, evaluation);
+    if (options.scenes.with_color) parameters = with_color_weight(parameters, options, solved);
     write_rld_parameters(file, parameters);
 }
 
