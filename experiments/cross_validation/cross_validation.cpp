@@ -53,12 +53,19 @@ LearningOptions without(const CrossValidationOptions& options, const CourseFamil
 }
 
 /// The hash of each file in the folder of a family, sorted by name. Throws InputError.
-nlohmann::ordered_json hashes_in(const fs::path& folder) {
+nlohmann::ordered_json hashes_in(const fs::path& folder, const char* option) {
     std::error_code failure;
     std::map<std::string, std::string> hashes;
     for (const fs::directory_entry& file : fs::directory_iterator(folder, failure))
         hashes[file.path().filename()] = file_hash(file.path());
-    if (failure) throw InputError(folder, 0, "--folds", "cannot be read: " + failure.message());
+    if (failure) throw InputError(folder, 0, option, "cannot be read: " + failure.message());
+    return hashes;
+}
+
+nlohmann::ordered_json hashes_of(const std::vector<CourseFamily>& families, const fs::path& folds,
+                                 const char* option) {
+    nlohmann::ordered_json hashes = nlohmann::ordered_json::object();
+    for (const CourseFamily& family : families) hashes[family.name] = hashes_in(folds / family.name, option);
     return hashes;
 }
 
@@ -67,20 +74,21 @@ std::string record_of(const CrossValidationOptions& options) {
     nlohmann::ordered_json families = nlohmann::ordered_json::object();
     for (const CourseFamily& family : options.families) families[family.name] = family.tracks;
     if (!options.folds.empty()) {
-        nlohmann::ordered_json folds = nlohmann::ordered_json::object();
-        for (const CourseFamily& family : options.families)
-            folds[family.name] = hashes_in(options.folds / family.name);
-        return nlohmann::ordered_json{{"families", families}, {"folds", folds}}.dump();
+        return nlohmann::ordered_json{{"families", families},
+                                      {"folds", hashes_of(options.families, options.folds, "--folds")}}
+            .dump();
     }
     const LearningOptions& learning = options.learning;
-    return nlohmann::ordered_json{{"families", families},
+    nlohmann::ordered_json record{{"families", families},
                                   {"always", options.always},
                                   {"scenes", scene_options_json(learning.scenes)},
                                   {"variants", learning.variants},
                                   {"evaluations", learning.evaluations},
                                   {"front_steps", learning.front_steps},
-                                  {"rld_steps", learning.rld_steps}}
-        .dump();
+                                  {"rld_steps", learning.rld_steps}};
+    if (!options.colors_from.empty())
+        record["colors_from"] = hashes_of(options.families, options.colors_from, "--colors-from");
+    return record.dump();
 }
 
 void check(const CrossValidationOptions& options) {
@@ -89,6 +97,12 @@ void check(const CrossValidationOptions& options) {
     for (const CourseFamily& family : options.families) {
         if (!names.insert(family.name).second)
             throw InvalidInput("family", fmt::format("'{}' is there twice", family.name));
+    }
+    if (options.colors_from.empty()) return;
+    if (!options.learning.scenes.with_color) throw InvalidInput("colors-from", "needs scenes with colour");
+    for (const ComparedDetector& compared : options.comparison.detectors) {
+        if (!compared.outside && find_detector(compared.name).color_use == ColorUse::ignored)
+            throw InvalidInput("colors-from", fmt::format("'{}' ignores colours", compared.name));
     }
 }
 
@@ -109,7 +123,8 @@ ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs
     comparison.prepare = [&] {
         if (!learns) return;
         for (const CourseFamily& family : options.families) {
-            const LearningOptions learning = without(options, family);
+            LearningOptions learning = without(options, family);
+            if (!options.colors_from.empty()) learning.without_colors = options.colors_from / family.name;
             fs::create_directories(folds / family.name);
             for (const ComparedDetector& compared : options.comparison.detectors) {
                 const Learner* learner = compared.outside ? nullptr : find_learner(compared.name);

@@ -16,6 +16,9 @@ struct CrossValidationOptions {
     LearningOptions learning;            ///< its tracks are those of a fold
     /// Learned files FOLDER/FAMILY/... of another cross-validation with the same families; empty: learn.
     std::filesystem::path folds;
+    /// FOLDER/FAMILY/... of another cross-validation with the same families, whose scenes had no colors: only
+    /// what the detectors make of colors is learned. Empty: everything is. Only for scenes with colors.
+    std::filesystem::path colors_from;
     /// The detectors, the scenes on which they are scored, and how they are run. Its tracks are those of the
     /// families.
     ComparisonOptions comparison;
@@ -26,7 +29,7 @@ struct CrossValidationOptions {
 /// drive them unchanged. Writes the files of `compare` to the directory, and learned files to folds/FAMILY/
 /// in it. With `folds` nothing is learned, and the record has hashes of the files. A stopped run resumes.
 /// Returns the table. Throws InputError or InvalidInput, also if a course belongs to two families, or to a
-/// family and to `always`, or if a learned file is missing.
+/// family and to `always`, if a learned file is missing, or if a detector with `colors_from` ignores colors.
 [[nodiscard]] ComparisonOutcome cross_validate(const CrossValidationOptions& options,
                                                const std::filesystem::path& directory);
 

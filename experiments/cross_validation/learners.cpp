@@ -4,6 +4,7 @@
 #include "conelane/rld_parameters.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/detector_parameter_file.hpp"
+#include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/file_text.hpp"
 #include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
@@ -17,6 +18,7 @@
 #include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
@@ -39,6 +41,7 @@ constexpr const char* kAstarLane = "astar-lane.json";
 constexpr const char* kShape = "rld-shape.json";
 constexpr const char* kLearnedRld = "rld-learned.json";
 constexpr const char* kLearnedRldCheckpoint = "rld-learned.checkpoint.json";
+constexpr const char* kColoredRldCheckpoint = "rld-learned.colors.checkpoint.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 constexpr const char* kFrontColorsCheckpoint = "front.colors.checkpoint.json";
 
@@ -154,8 +157,12 @@ void learn_parameters(std::string_view detector, const LearningOptions& options,
     write(file, to_json_text(tunable, tuned.values));
 }
 
+// Its weight of colors is not tuned, so its parameters for scenes with colors are those without.
 void learn_delaunay_beam(const LearningOptions& options, const fs::path& folder) {
-    learn_parameters("delaunay-beam", options, folder / kDelaunayBeam);
+    if (options.without_colors.empty())
+        learn_parameters("delaunay-beam", options, folder / kDelaunayBeam);
+    else if (!fs::exists(folder / kDelaunayBeam))
+        write(folder / kDelaunayBeam, text_of(options.without_colors / kDelaunayBeam));
 }
 
 void learn_astar_lane(const LearningOptions& options, const fs::path& folder) {
@@ -184,17 +191,43 @@ DetectorMaker make_astar_lane(const fs::path& folder, const RunOptions& options)
 
 // The weights of the RLD objective with the costs of the lane's shape.
 
+RldParameters tuned_shape(const LearningOptions& options, const EvaluationOptions& solved) {
+    const Evaluation evaluation(scenes_to_tune_on(options), solved);
+    return tune([&](const RldParameters& parameters) { return evaluation(parameters); },
+                with_shape_costs(RldParameters{}), {1, options.evaluations, options.scenes.seed})
+        .parameters;
+}
+
+/// With the best w_color; of equal ones the smallest. Slow scenes have no value, but do not spoil the others:
+/// dense ones are slow with any weight.
+RldParameters with_color_weight(const RldParameters& parameters, const LearningOptions& options,
+                                EvaluationOptions solved) {
+    solved.max_timed_out = 1.0;
+    const Evaluation evaluation(scenes_to_tune_on(options), solved);
+    RldParameters best = parameters;
+    double best_value = -1.0;
+    for (const double weight : kColorWeights) {
+        RldParameters tried = parameters;
+        tried.w_color = weight;
+        const double value = mean_over_scenes(evaluation(tried));
+        if (value <= best_value) continue;
+        best = tried;
+        best_value = value;
+    }
+    return best;
+}
+
 void learn_shape(const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kShape;
     if (fs::exists(file)) return;
     EvaluationOptions solved;
     solved.objective = TuningObjective::usable;
     solved.threads = options.scenes.threads;
-    const Evaluation evaluation(scenes_to_tune_on(options), solved);
-    const Tuned tuned =
-        tune([&](const RldParameters& parameters) { return evaluation(parameters); },
-             with_shape_costs(RldParameters{}), {1, options.evaluations, options.scenes.seed});
-    write_rld_parameters(file, tuned.parameters);
+    RldParameters parameters = options.without_colors.empty()
+                                   ? tuned_shape(options, solved)
+                                   : read_rld_parameters(options.without_colors / kShape);
+    if (options.scenes.with_color) parameters = with_color_weight(parameters, options, solved);
+    write_rld_parameters(file, parameters);
 }
 
 DetectorMaker make_shape(const fs::path& folder, const RunOptions& options) {
@@ -202,6 +235,9 @@ DetectorMaker make_shape(const fs::path& folder, const RunOptions& options) {
     learned.detector.rld_parameters = read_rld_parameters(folder / kShape);
     return maker_of(find_detector("rld-shape"), learned);
 }
+
+// The share of the draws with colors while colors are learned, as for the shipped set of front.
+constexpr double kColoredShare = 0.85;
 
 // The learned costs of RLD, with the options of the shipped ones. Their training draws its scenes itself, as
 // that of front does.
@@ -220,10 +256,22 @@ void learn_rld(const LearningOptions& options, const fs::path& folder) {
     run.training.learning_rate = kLearnedRldRate;
     run.training.seed = options.scenes.seed;
     run.training.threads = options.scenes.threads;
-    run.training.checkpoint = folder / kLearnedRldCheckpoint;
-    const RldTrainingRun result = run_rld_training(run, {});
+    RldTrainingRun result;
+    if (options.without_colors.empty()) {
+        run.training.checkpoint = folder / kLearnedRldCheckpoint;
+        result = run_rld_training(run, {});
+    } else {
+        result.parameters = read_rld_parameters(options.without_colors / kLearnedRld);
+    }
+    if (options.scenes.with_color) {
+        run.training.parameters = result.parameters;
+        run.training.scenes.colored_share = kColoredShare;
+        run.training.checkpoint = folder / kColoredRldCheckpoint;
+        result = run_rld_training(run, {});
+    }
     write_rld_parameters(file, result.parameters, result.record);
-    fs::remove(run.training.checkpoint);
+    for (const char* checkpoint : {kLearnedRldCheckpoint, kColoredRldCheckpoint})
+        fs::remove(folder / checkpoint);
 }
 
 DetectorMaker make_learned_rld(const fs::path& folder, const RunOptions& options) {
@@ -235,11 +283,14 @@ DetectorMaker make_learned_rld(const fs::path& folder, const RunOptions& options
 // The weights of front. Its training draws its own scenes, so only these options count: seed, threads, and
 // whether there are colors. A set for colors is learned after the first set, like the shipped one.
 
-constexpr double kColoredShare = 0.85;
 constexpr std::size_t kColoredSearchSteps = 5000;
 constexpr double kColoredSearchRate = 7e-4;
 constexpr std::size_t kColoredJudgeSteps = 3000;
 constexpr double kColoredJudgeRate = 1.5e-3;
+
+FrontWeights read_weights(const fs::path& file) {
+    return parsed_file(file, [](auto text) { return parse_front_weights(text); });
+}
 
 FrontTrainingRun run_stage(FrontTrainingRunOptions run, const LearningOptions& options) {
     FrontTrainingOptions& training = run.training;
@@ -250,10 +301,11 @@ FrontTrainingRun run_stage(FrontTrainingRunOptions run, const LearningOptions& o
 }
 
 FrontTrainingRun learn_colors(FrontTrainingRunOptions run, const LearningOptions& options,
-                              const FrontTrainingRun& first, const fs::path& folder) {
+                              const FrontWeights& first, const std::string& name_of_first,
+                              const fs::path& folder) {
     FrontTrainingOptions& training = run.training;
-    training.initial = first.weights;
-    training.initial_name = "the first set";
+    training.initial = first;
+    training.initial_name = name_of_first;
     training.only_colors = true;
     training.scenes.colored_share = kColoredShare;
     training.scenes.noise_scenes = false;
@@ -275,15 +327,23 @@ void learn_front(const LearningOptions& options, const fs::path& folder) {
     run.training.seed = options.scenes.seed;
     run.training.threads = options.scenes.threads;
     run.training.checkpoint = folder / kFrontCheckpoint;
-    FrontTrainingRun result = run_stage(run, options);
-    if (options.scenes.with_color) result = learn_colors(run, options, result, folder);
+    FrontTrainingRun result;
+    std::string name = "the first set";
+    if (options.without_colors.empty()) {
+        result = run_stage(run, options);
+    } else {
+        const fs::path first = options.without_colors / kFrontFoldFile;
+        result.weights = read_weights(first);
+        name = file_hash(first);
+    }
+    if (options.scenes.with_color) result = learn_colors(run, options, result.weights, name, folder);
     write(folder / kFrontFoldFile, front_weights_json(result.weights, result.record));
     fs::remove(run.training.checkpoint);
 }
 
 FrontOptions front_options(const fs::path& folder) {
     FrontOptions front = shipped_front_options();
-    front.weights = parsed_file(folder / kFrontFoldFile, [](auto text) { return parse_front_weights(text); });
+    front.weights = read_weights(folder / kFrontFoldFile);
     return front;
 }
 

@@ -20,12 +20,16 @@ struct LearningOptions {
     std::size_t evaluations = 60;     ///< number of parameter sets that tuning tries, on every fourth pose
     double front_steps = 1.0;  ///< length of the training of `front`, as a share of the shipped training
     double rld_steps = 1.0;    ///< the same of the training of `rld-learned`
+    /// Folder of the files that the detectors have learned without colors. Empty: they learn these first.
+    std::filesystem::path without_colors;
 };
 
 /// The file of the weights of front in the folder of a fold.
 inline constexpr std::string_view kFrontFoldFile = "front.json";
 
-/// A detector whose weights or parameters come from courses, learned by the recipe of the shipped ones.
+/// A detector whose weights or parameters come from courses, learned by the recipe of the shipped ones. If
+/// the scenes have colors, the detectors that use them learn those in a second stage: `front` its set for
+/// colors, `rld-learned` its costs on draws that show colors too, and `rld-shape` chooses w_color.
 struct Learner {
     std::string_view detector;
     /// Learns and writes its files to the folder. Existing files are not learned again, so detectors share

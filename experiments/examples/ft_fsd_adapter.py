@@ -5,8 +5,8 @@
     python3 ft_fsd_adapter.py --warm-up    # once: compiles it, which takes a minute
     conelane compare --methods clc "exec:ft-fsd=python3 ft_fsd_adapter.py" --out DIR
 
-It answers with the cones that its sorting gives each side; with --path by the path that its whole pipeline plans. Cones
-are given without colour, also where a scene has colours. `latency_ms` is the time in its own code.
+It answers with the cones that its sorting gives each side; with --path by the path that its whole pipeline plans. With
+--colors it gets the colours of the scene, without it no cone has one. `latency_ms` is the time in its own code.
 """
 import json
 import sys
@@ -18,6 +18,7 @@ from fsd_path_planning import ConeTypes, MissionTypes, PathPlanner
 from fsd_path_planning.sorting_cones.core_cone_sorting import ConeSortingInput
 
 warnings.simplefilter("ignore", DeprecationWarning)  # versions differ in how the sorting is called
+TYPES = {"blue": ConeTypes.LEFT, "yellow": ConeTypes.RIGHT, "orange": ConeTypes.START_FINISH_AREA, "unknown": ConeTypes.UNKNOWN}
 WARM_UP = {"id": "0", "pose": {"x": -1, "y": 0, "yaw": 0},
            "cones": [{"x": 4 * i, "y": y} for i in range(8) for y in (-1.75, 1.75)]}
 
@@ -37,9 +38,10 @@ def plan(planner, cones, position, direction):
 
 def answer(planner, how, scene):
     pose = scene["pose"]
-    cones = [np.zeros((0, 2)) for _ in ConeTypes]
-    if scene["cones"]:
-        cones[ConeTypes.UNKNOWN] = np.array([[cone["x"], cone["y"]] for cone in scene["cones"]], dtype=float)
+    by_type = [[] for _ in ConeTypes]
+    for cone in scene["cones"]:
+        by_type[TYPES[cone.get("color", "unknown")] if "--colors" in sys.argv else ConeTypes.UNKNOWN].append([cone["x"], cone["y"]])
+    cones = [np.array(places, dtype=float).reshape(-1, 2) for places in by_type]
     start = time.perf_counter()
     try:
         lane = how(planner, cones, np.array([pose["x"], pose["y"]], dtype=float),

@@ -3,6 +3,7 @@
 #include "conelane/rld_parameters.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
 #include "experiments/tuning/evaluation.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -35,8 +36,8 @@ struct ConfidenceColorOptions {
     std::vector<HeldOut> folds;
     std::vector<std::string> only;  ///< tracks to report; all held-out ones if empty
     std::vector<double> color_errors{0.0, 0.05, 0.2};
-    std::vector<double> color_weights{0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};  ///< w_color, ascending
-    std::vector<double> benefits{1.0, 1.5, 2.0, 2.5, 3.0};                       ///< w_b, ascending
+    std::vector<double> color_weights{kColorWeights.begin(), kColorWeights.end()};  ///< w_color, ascending
+    std::vector<double> benefits{1.0, 1.5, 2.0, 2.5, 3.0};                          ///< w_b, ascending
 };
 
 /// Scenes, cone set and folds of a record that `conelane tune` has written. Throws InputError if the file is

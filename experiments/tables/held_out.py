@@ -7,7 +7,8 @@ from collections import defaultdict
 from cells import both, lines_of, percent, provenance, rounded, table, version_of
 from races import MEASURES, mean, measure_cells, race_rows
 
-COMPARISONS = ["front", "front_no_persist", "front_lap", "clc", "others", "peers"]
+COMPARISONS = ["front", "front_no_persist", "front_lap", "front_colors", "clc", "others", "others_colors", "peers", "peers_colors"]
+OPTIONAL = {"peers", "peers_colors"}  # of answers that DATA may have
 RACES = ["race", "race_harsh", "race_ten"]
 OWN_SCENES = {"front", "clc", "others", "peers"}  # runs on the scenes of the first table
 
@@ -29,6 +30,9 @@ METHODS = {
     "astar-lane": "`astar-lane`",
     "ft-fsd-path-planning": "ft-fsd-path-planning, without colours",
 }
+# The run in which a method sees colours, for each method that can use them.
+COLOURED = {"front": "front_colors", "rld-learned": "others_colors", "rld-shape": "others_colors", "delaunay-beam": "others_colors",
+            "ft-fsd-path-planning": "peers_colors"}
 README_METHODS = METHODS | {
     "clc-paper": "`clc-paper`: CLC as printed",
     "rld-pair": "`rld-pair`: RLD's own objective",
@@ -115,7 +119,7 @@ def collect(folder):
     family_of = {}
     for name in COMPARISONS:
         path = os.path.join(folder, name)
-        if name == "peers" and not os.path.exists(path):
+        if name in OPTIONAL and not os.path.exists(path):
             continue
         lines = lines_of(os.path.join(path, "results.jsonl"))
         stored["runs"][name] = provenance(lines[0])
@@ -124,7 +128,7 @@ def collect(folder):
         if not family_of:
             family_of = families_of(os.path.join(path, "folds"), {score["track"] for score in scores})
         stored["parts"] += [{"run": name} | row for row in part_of(scores, family_of, "designed", lambda family, _: family in DESIGNED)]
-        if name in ("front", "front_no_persist"):
+        if name in ("front", "front_no_persist", "front_colors"):
             stored["parts"] += [{"run": name} | row
                                 for row in part_of(scores, family_of, "ordinary", lambda _, track: track not in PECULIAR)]
     stored["courses"] = family_of
@@ -196,10 +200,21 @@ def designed_table(figures):
 
 def ordinary_table(figures):
     rows = [("`paper`", "front", "paper"), ("`car`", "front", "car"),
-            ("`car`, false positives drawn at each pose", "front_no_persist", "car"), ("`harsh`", "front", "harsh")]
+            ("`car`, with colours", "front_colors", "car"), ("`car`, false positives drawn at each pose", "front_no_persist", "car"),
+            ("`harsh`", "front", "harsh")]
     return table(["usable / IoU, %"] + [f"{100 * rate:.0f} %" for rate in RATES],
                  [[label] + [both(figures.part("ordinary", run, "front", condition, rate, {30.0, 50.0})) for rate in RATES]
                   for label, run, condition in rows])
+
+
+def colour_table(figures):
+    """Each method that can use colours, without and with them. A run that is not stored is a row of dashes, so that it is missed."""
+    distances = (30.0, 50.0)
+    head = ["`car`, usable / IoU, %"] + [f"{distance:.0f} m, {100 * rate:.0f} %" if rate == RATES[0] else f"{100 * rate:.0f} %"
+                                         for distance in distances for rate in RATES]
+    return table(head, [[METHODS[method].removesuffix(", without colours") + label] +
+                        [both(figures.row(run, method, "car", rate, distance)) for distance in distances for rate in RATES]
+                        for method, coloured in COLOURED.items() for label, run in (("", None), (", with colours", coloured))])
 
 
 def conditions_table(figures):
@@ -338,6 +353,7 @@ TABLES = {
     "quality at 50 m": lambda figures: quality_table(figures, 50.0),
     "designed courses": designed_table,
     "ordinary courses": ordinary_table,
+    "with colours": colour_table,
     "conditions of front": conditions_table,
     "errors": error_table,
     "certainty of front": certainty_table,

@@ -2,6 +2,7 @@
 
 #include "conelane/rld_parameters.hpp"
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,9 @@ struct TunedParameter {
 /// stays too. If the shape costs have a weight in `start`, their parameters are changed instead of the
 /// limits.
 [[nodiscard]] std::span<const TunedParameter> tuned_parameters(const RldParameters& start);
+
+/// Values of w_color to choose from, beside fixed other parameters; ascending.
+inline constexpr std::array kColorWeights{0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};
 
 /// To four decimals: short numbers in files, and the same ones on every machine, whose logarithms differ in
 /// the last bits.

@@ -23,7 +23,8 @@ struct CrossValidateOptions {
     std::vector<std::string> learning_conditions{"paper", "car"};
     double learning_every_m = 12.0;
     unsigned threads = 1;
-    std::string folds;  ///< folder of learned files; empty: learn
+    std::string folds;        ///< folder of learned files; empty: learn
+    std::string colors_from;  ///< folder of files learned without colors; empty: learn everything
     std::string directory;
 };
 
@@ -45,6 +46,7 @@ void run(CrossValidateOptions& options) {
     run.comparison.scenes.threads = options.threads;
     run.comparison.run.threads = options.threads;
     run.folds = options.folds;
+    run.colors_from = options.colors_from;
     require_own_page(options.directory);
     const ComparisonOutcome outcome = cross_validate(run, options.directory);
     fmt::print("{}", outcome.summary);
@@ -116,6 +118,12 @@ void add_cross_validate_command(CLI::App& program) {
         ->excludes("--evaluations")
         ->excludes("--front-steps")
         ->excludes("--rld-steps");
+    command
+        .add_option("--colors-from", options->colors_from,
+                    "FOLDER/NAME/..., learned without --color by another cross-validation: with --color, the "
+                    "methods go on from there and learn only what they make of colours. The shares of steps "
+                    "are those of this")
+        ->excludes("--folds");
     options->run.comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, options->run.comparison.run.limits.time_limit_ms);
     add_threads_option(command, options->threads,

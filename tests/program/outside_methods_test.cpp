@@ -568,7 +568,7 @@ TEST_F(OutsideDetectors, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
         "'exec:ft-fsd=" +
         adapter + "' 'exec:ft-fsd-path=" + adapter + " --path'");
     EXPECT_THAT(text_of(path("r/table.txt")),
-                HasSubstr("ft-fsd-path-planning, cone sorting; licence MIT; no colour; no history"));
+                HasSubstr("ft-fsd-path-planning, cone sorting; licence MIT; no history"));
     for (const json& row : lines("r/results.jsonl")) {
         EXPECT_EQ(row["errors"], 0);
         EXPECT_EQ(row["usable_share"], 1.0);
@@ -578,6 +578,29 @@ TEST_F(OutsideDetectors, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
     for (const LaneRecord& record : lanes("r/ft-fsd-path")) EXPECT_EQ(record.centre_line.size(), 30U);
     EXPECT_EQ(std::system(("cd " + path("").string() + " && " + adapter + " --warm-up >warm").c_str()), 0);
     EXPECT_EQ(json::parse(text_of(path("warm")))[0]["left_points"].size(), 8U);
+    // The stand-in sorts cones of unknown colour alone, so with colours it finds those that are left without.
+    run_well(
+        "scenes --tracks generated:straight --condition paper --every 60 --fp 0 --color --color-unknown 0.5 "
+        "--out s.scenes.jsonl");
+    run_well("detect --scenes s.scenes.jsonl --out all.lanes.jsonl --method 'exec:ft-fsd=" + adapter + "'");
+    run_well("detect --scenes s.scenes.jsonl --out some.lanes.jsonl --method 'exec:ft-fsd=" + adapter +
+             " --colors'");
+    std::size_t unknown = 0;
+    std::size_t cones = 0;
+    for (const AnnotatedScene& scene : read_scenes(path("s.scenes.jsonl"))) {
+        cones += scene.scene.cones.size();
+        unknown +=
+            static_cast<std::size_t>(std::ranges::count(scene.scene.cones, ConeColor::unknown, &Cone::color));
+    }
+    const auto answered = [&](const char* file) {
+        std::size_t count = 0;
+        for (const LaneRecord& record : read_lanes(path(file)))
+            count += record.answer.lane.left.size() + record.answer.lane.right.size();
+        return count;
+    };
+    EXPECT_EQ(answered("all.lanes.jsonl"), cones);
+    EXPECT_EQ(answered("some.lanes.jsonl"), unknown);
+    EXPECT_LT(unknown, cones);
 }
 
 }  // namespace

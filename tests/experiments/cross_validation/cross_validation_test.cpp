@@ -1,8 +1,13 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
+#include "conelane/learned_costs.hpp"
+#include "evaluation/files/file_hash.hpp"
+#include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/lane_file.hpp"
+#include "evaluation/files/parameter_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "experiments/comparison/known_detectors.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 #include "tests/support/program_fixture.hpp"
 
 #include <filesystem>
@@ -113,6 +118,62 @@ TEST_F(CrossValidation, TakesTheLearnedFilesOfAnother) {
     const Outcome without = run(again + "without");
     EXPECT_EQ(without.exit_code, 2);
     EXPECT_THAT(without.errors, HasSubstr("--folds"));
+}
+
+TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
+    const std::string methods = "front,rld-learned,rld-shape,delaunay-beam";
+    ASSERT_EQ(run(kFolds + methods).exit_code, 0);
+    const std::string colors =
+        "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
+        "--learn-condition paper --learn-every 60 --condition paper --fp 0.3 --range 30 --every 40 "
+        "--front-steps 0.002 --rld-steps 0.01 --colors-from cv/folds ";
+    const Outcome outcome = run(colors + "--color --color-wrong 0.05 --out colored --methods " + methods);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    for (const std::string fold : {"a", "b"}) {
+        const std::string first = text_of(path("cv/folds/" + fold + "/front.json"));
+        const std::string second = text_of(path("colored/folds/" + fold + "/front.json"));
+        const FrontWeights before = parse_front_weights(first);
+        FrontWeights after = parse_front_weights(second);
+        ASSERT_FALSE(before.colored);
+        ASSERT_TRUE(after.colored);
+        EXPECT_NE(after.colored->extend, before.extend) << "colors were learned";
+        after.colored.reset();
+        EXPECT_EQ(after, before) << "nothing else was";
+        EXPECT_EQ(courses_learned(second), courses_learned(first));
+        const auto training = nlohmann::json::parse(second).at("training");
+        EXPECT_EQ(training.at("begins_with"), file_hash(path("cv/folds/" + fold + "/front.json")));
+
+        const auto rld = [&](const std::string& run, const std::string& method) {
+            return read_rld_parameters(path(run + "/folds/" + fold + "/" + method + ".json"));
+        };
+        EXPECT_NE(*rld("colored", "rld-learned").learned_costs, *rld("cv", "rld-learned").learned_costs);
+        const std::string costs = text_of(path("colored/folds/" + fold + "/rld-learned.weights.json"));
+        EXPECT_GT(nlohmann::json::parse(costs).at("training").at("scenes").at("colored_share"), 0.0);
+        EXPECT_THAT(kColorWeights, testing::Contains(rld("colored", "rld-shape").w_color));
+        const auto without_w_color = [&](const std::string& run) {
+            auto shape = nlohmann::json::parse(text_of(path(run + "/folds/" + fold + "/rld-shape.json")));
+            shape.erase("w_color");
+            return shape;
+        };
+        EXPECT_EQ(without_w_color("colored"), without_w_color("cv"));
+        EXPECT_EQ(text_of(path("colored/folds/" + fold + "/delaunay-beam.json")),
+                  text_of(path("cv/folds/" + fold + "/delaunay-beam.json")));
+    }
+    const auto record = nlohmann::json::parse(text_of(path("colored/run.json"))).at("cross_validation");
+    EXPECT_EQ(record.at("colors_from").at("a").at("front.json"), file_hash(path("cv/folds/a/front.json")));
+
+    const auto refused = [&](const std::string& options) {
+        const Outcome wrong = run(colors + "--out refused " + options);
+        EXPECT_EQ(wrong.exit_code, 2) << options;
+        return wrong.errors;
+    };
+    EXPECT_THAT(refused("--methods front"), HasSubstr("needs scenes with colour"));
+    EXPECT_THAT(refused("--color --methods front,clc"), HasSubstr("'clc' ignores colours"));
+    EXPECT_THAT(refused("--color --methods front --folds cv/folds"), HasSubstr("--folds"));
+    std::filesystem::remove(path("cv/folds/b/delaunay-beam.json"));
+    EXPECT_THAT(refused("--color --methods delaunay-beam"), HasSubstr("delaunay-beam.json"));
+    std::filesystem::remove_all(path("cv/folds/b"));
+    EXPECT_THAT(refused("--color --methods front --overwrite"), HasSubstr("--colors-from"));
 }
 
 TEST_F(CrossValidation, RefusesInvalidFolds) {

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -42,6 +43,31 @@ class HeldOut(unittest.TestCase):
         self.assertEqual((rows[0]["scenes"], rows[0]["judged"], rows[0]["measured"]), (3, 3, 2))
         self.assertAlmostEqual(rows[0]["usable"], 2 / 3, places=6)
         self.assertAlmostEqual(rows[0]["iou"], 0.75)
+
+    def test_a_method_has_a_row_without_and_one_with_colours(self):
+        def row(run, method, usable):
+            return {"run": run, "method": method, "condition": "car", "rate": 0.0, "range": 30.0, "usable": usable, "iou": 0.5}
+        rows = [row("front", "front", 0.9), row("front_colors", "front", 0.95), row("others_colors", "rld-shape", 0.6)]
+        lines = held_out.colour_table(held_out.Figures({"rows": rows})).splitlines()[2:]
+        dashes = " – |" * 7
+        self.assertEqual(lines[:2], [f"| `front` | 90.0 / 50 |{dashes}", f"| `front`, with colours | 95.0 / 50 |{dashes}"])
+        self.assertIn(f"| `rld-shape` | – |{dashes}", lines)
+        self.assertIn(f"| `rld-shape`, with colours | 60.0 / 50 |{dashes}", lines)
+        self.assertEqual(lines[-1], f"| ft-fsd-path-planning, with colours | – |{dashes}")
+        self.assertEqual(len(lines), 2 * len(held_out.COLOURED))
+
+    def test_ordinary_courses_have_a_row_with_colours(self):
+        part = {"part": "ordinary", "run": "front_colors", "method": "front", "condition": "car", "rate": 0.0, "scenes": 1, "measured": 1, "iou": 1.0}
+        parts = [part | {"range": 30.0, "usable": 1.0, "judged": 3}, part | {"range": 50.0, "usable": 0.0, "judged": 1}]
+        text = held_out.ordinary_table(held_out.Figures({"parts": parts}))
+        self.assertIn("| `car`, with colours | 75.0 / 100 | – | – | – |", text)
+        self.assertIn("| `car` | – | – | – | – |", text)
+
+    def test_the_script_makes_each_run_and_no_figure_with_colours_stands_for_one_without(self):
+        with open(os.path.join(ROOT, "experiments", "tables", "held_out"), encoding="utf-8") as stream:
+            made = re.findall(r"^ *(?:cross_validate|race|peer) (\w+) ", stream.read(), flags=re.M)
+        self.assertEqual(sorted(made), sorted(held_out.COMPARISONS + held_out.RACES))
+        self.assertLessEqual(set(held_out.COLOURED.values()), set(held_out.COMPARISONS) - held_out.OWN_SCENES)
 
 
 def heat(method="a", finished=True, **values):
