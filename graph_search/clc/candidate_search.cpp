@@ -71,6 +71,8 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     if (graph_.build(points_, options_.d_max_m, options_.edge_rule, budget_)) {
         reach_.reset(graph_, options_.nearest_neighbours);
         rules_.reach = &reach_;
+        next_vertex_.reset(graph_, options_.next_vertex_distance_weight / options_.d_max_m, &reach_);
+        rules_.next_vertex = &next_vertex_;
         find_seeds(scene, report);
         for (Seed& seed : seeds()) {
             run_from(seed, &seed == &seeds().back(), scene, report);

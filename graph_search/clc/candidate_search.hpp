@@ -5,6 +5,7 @@
 #include "conelane/stop_reason.hpp"
 #include "graph_search/clc/lane_beam.hpp"
 #include "graph_search/clc/lane_constraints.hpp"
+#include "graph_search/clc/next_vertex.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "graph_search/clc/step_reach.hpp"
@@ -109,6 +110,7 @@ class CandidateSearch {
     EnumerationRules rules_;
     SearchGraph graph_;
     StepReach reach_;
+    NextVertexDecider next_vertex_;
     SearchBudget budget_;
     StartPairs starts_;
     std::vector<StartPair> pairs_to_try_;

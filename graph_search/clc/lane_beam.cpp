@@ -1,7 +1,6 @@
 #include "graph_search/clc/lane_beam.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/next_vertex.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "model/geometry.hpp"
@@ -13,6 +12,7 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -65,11 +65,42 @@ Place place(std::size_t measure, double value) {
             at - static_cast<double>(below)};
 }
 
+/// The scores of a measure.
+std::span<const double> scores_of(const StepScores& scores, std::size_t measure) {
+    return std::span(scores.values).subspan(kOffsets[measure], kMeasures[measure].scores);
+}
+double most(const StepScores& scores, std::size_t measure) {
+    return std::ranges::max(scores_of(scores, measure));
+}
+/// The largest change of a score by a change of its measure by 1.
+double steepest(const StepScores& scores, std::size_t measure) {
+    const std::span<const double> values = scores_of(scores, measure);
+    double change = 0.0;
+    for (std::size_t i = 1; i < values.size(); ++i)
+        change = std::max(change, std::abs(values[i] - values[i - 1]));
+    return change / kMeasures[measure].spacing;
+}
+
+/// The score of one measure up to rounding, without a division.
+template <std::size_t measure>
+double nearly_score(const double* values, double value) {
+    constexpr StepMeasure kTable = kMeasures[measure];
+    constexpr double kPerSpacing = 1.0 / kTable.spacing;
+    constexpr double kLast = static_cast<double>(kTable.scores - 1);
+    const double at = std::min(std::max((value - kTable.first) * kPerSpacing, 0.0), kLast);
+    const auto below = static_cast<std::int32_t>(std::min(at, kLast - 1.0));
+    const double* const score = values + kOffsets[measure] + below;
+    return score[0] + (at - below) * (score[1] - score[0]);
+}
+
 /// A first segment may turn farther from the heading than later segments from each other, because the car
 /// need not be parallel to the lane.
 constexpr double kMaxFirstTurn_rad = 110.0 * kDegree;
 
 constexpr Vertex kNoVertex = ~Vertex{0};
+
+/// A hash of 32 bits is shifted by this to a place among those in LaneBeam::about_.
+constexpr unsigned kAboutShift = 22;
 
 /// Bits of a state; beyond so many vertices some share a bit.
 constexpr std::size_t kBits = 64 * std::tuple_size_v<decltype(LaneBeam::State::bits)>;
@@ -93,11 +124,16 @@ std::size_t step_score_count(std::size_t measure) {
 
 double StepScores::score(const StepMeasures& step) const {
     double sum = 0.0;
-    for (std::size_t i = 0; i < kStepMeasureCount; ++i) {
-        if (std::isnan(step[i])) continue;
-        const Place at = place(i, step[i]);
+    const auto add = [&](std::size_t measure) {
+        if (std::isnan(step[measure])) return;
+        const Place at = place(measure, step[measure]);
         sum += (1.0 - at.share) * values[at.first] + at.share * values[at.second];
+    };
+    // Unrolled, so that the tables are constants.
+    [&]<std::size_t... measure>(std::index_sequence<measure...>) {
+        (add(measure), ...);
     }
+    (std::make_index_sequence<kStepMeasureCount>());
     return sum;
 }
 
@@ -134,62 +170,56 @@ void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<con
     heading_ = scene.pose.heading();
     width_ = width;
     constexpr double kRounding = 1e-9;
-    most_about_ = kRounding;
-    for (const std::size_t measure : {kBesideMeasure, kCloseMeasure, kInsideMeasure}) {
-        const auto first = scores.values.begin() + static_cast<std::ptrdiff_t>(kOffsets[measure]);
-        most_about_ +=
-            *std::max_element(first, first + static_cast<std::ptrdiff_t>(kMeasures[measure].scores));
-    }
+    double largest = 1.0;
+    for (const double value : scores.values) largest = std::max(largest, std::abs(value));
+    slack_ = kRounding * largest + scores_of(scores, kStepsMeasure)[0];
+    for (const std::size_t measure : {kBesideMeasure, kCloseMeasure, kInsideMeasure})
+        slack_ += most(scores, measure);
+    for (const std::size_t measure : {kFirstTurnMeasure, kTurnMeasure, kTurnChangeMeasure, kSkewMeasure})
+        slack_ += kNearlyAngle_rad * steepest(scores, measure);
+    slack_per_m_ = kNearlyAngle_rad * steepest(scores, kTurnTimesSegmentMeasure);
+    if (reach_ == nullptr) all_.reset(graph, 0);
+    about_.assign(std::size_t{1} << (32U - kAboutShift), {{kNoVertex, kNoVertex, kNoVertex}, {}});
+    onward_.clear();
+    after_first_.assign(graph.vertex_count(), {kUnknown, kUnknown});
+    after_edge_.assign(graph.directed_edge_count(), {kUnknown, kUnknown});
     states_.clear();
-    best_ = {kNotBetter, 0.0, kNone, kNoVertex, kNoVertex, kNoVertex};
+    best_ = {kNotBetter, 0.0, 0.0, kNone, kNoVertex, kNoVertex, kNoVertex};
     next_.clear();
     for (const StartPair& start : starts) {
         const std::size_t number = add_start(start);
         const auto [low, high] = std::minmax(start.left, start.right);
-        next_.push_back({states_[number].score, 0.0, number, kNoVertex, low, high});
+        next_.push_back({states_[number].score, 0.0, 0.0, number, kNoVertex, low, high});
     }
     keep_best();
 }
 
 bool LaneBeam::advance(SearchBudget& budget) {
     next_.clear();
-    Step step;
     for (const std::size_t number : level_) {
         const State& from = states_[number];
         const Side side = next_side(from);
         const Vertex facing = from.last[opposite(side)];
         const bool is_lane = from.vertices[opposite(side)] > 1;
-        const std::span<const Vertex> neighbours = graph_->neighbours(from.last[side]);
-        const Point& tip = graph_->position(from.last[side]);
-        const double reach_m2 =
-            reach_ != nullptr ? reach_->squared_m2(from.last[side]) : std::numeric_limits<double>::infinity();
+        const std::size_t neighbours = graph_->neighbours(from.last[side]).size();
+        if (budget.spend(neighbours)) return false;
         // A test of membership walks back along the lane; looking around a segment visits all neighbours.
-        const std::size_t work =
-            10 + (from.vertices[kLeft] + from.vertices[kRight]) / 8 + neighbours.size() / 8;
-        for (const Vertex vertex : neighbours) {
-            if ((graph_->position(vertex) - tip).squaredNorm() > reach_m2) continue;
+        const std::size_t work = 10 + (from.vertices[kLeft] + from.vertices[kRight]) / 8 + neighbours / 8;
+        const auto [begin, end] = onward(from, side);
+        for (std::uint32_t i = begin; i != end; ++i) {
             if (budget.spend(work)) return false;
-            if (!measure(number, side, vertex, step)) continue;
-            const auto [low, high] = std::minmax(vertex, facing);
-            Extension extension{score_after(number, step) + most_about_,
-                                from.length_m + step.segment_m,
-                                number,
-                                vertex,
-                                low,
-                                high,
-                                false};
-            if (is_lane && extension.score > best_.score) {
-                look_about(number, side, vertex, step);
-                extension.score = score_after(number, step);
-                extension.exact = true;
-                if (extension.score > best_.score) best_ = extension;
-            }
-            next_.push_back(extension);
+            const Onward& step = onward_[i];
+            double width_m = 0.0;
+            if (!has_room(number, side, step.vertex, width_m)) continue;
+            const auto [low, high] = std::minmax(step.vertex, facing);
+            next_.push_back({bound_after(from, side, step, width_m), from.length_m + step.segment_m, width_m,
+                             number, step.vertex, low, high, i, false, is_lane, side});
         }
     }
     keep_best();
     return !level_.empty() &&
-           !budget.occupy(states_.size() * sizeof(State) + next_.size() * sizeof(Extension));
+           !budget.occupy(states_.size() * sizeof(State) + next_.size() * sizeof(Extension) +
+                          onward_.size() * sizeof(Onward) + after_edge_.size() * sizeof(Range));
 }
 
 std::size_t LaneBeam::run(SearchBudget& budget) {
@@ -248,28 +278,101 @@ std::size_t LaneBeam::add_start(StartPair start) {
     return states_.size() - 1;
 }
 
-bool LaneBeam::measure(std::size_t number, Side side, Vertex vertex, Step& step) const {
+bool LaneBeam::turns_to(const State& from, Side side, Vertex vertex, Onward& onward) const {
+    const double* const values = scores_->values.data();
+    const bool is_first = from.vertices[side] == 1;
+    onward.vertex = vertex;
+    onward.segment = graph_->position(vertex) - graph_->position(from.last[side]);
+    const double turning = turning_measure(from.direction[side], onward.segment);
+    if (turning >= (is_first ? first_turn_limit_ : turn_limit_)) return false;
+    onward.segment_m = onward.segment.norm();
+    onward.direction = onward.segment / onward.segment_m;
+    const double turn_rad = nearly_angle_rad(turning);
+    onward.turn_rad = kNotThere;
+    onward.nearly_turn_rad = std::copysign(turn_rad, cross(from.direction[side], onward.segment));
+    onward.bound =
+        slack_ + slack_per_m_ * onward.segment_m + nearly_score<kSegmentMeasure>(values, onward.segment_m) +
+        (is_first ? nearly_score<kFirstTurnMeasure>(values, turn_rad)
+                  : nearly_score<kTurnMeasure>(values, turn_rad) +
+                        nearly_score<kTurnTimesSegmentMeasure>(values, turn_rad * onward.segment_m) +
+                        nearly_score<kSegmentChangeMeasure>(
+                            values, std::abs(onward.segment_m - from.segment_m[side])));
+    return true;
+}
+
+LaneBeam::Range LaneBeam::onward(const State& from, Side side) {
+    const Vertex tip = from.last[side];
+    Range unknown{kUnknown, kUnknown};
+    Range* range = &unknown;
+    if (from.vertices[side] == 1) {
+        range = &after_first_[tip];
+    } else {
+        const std::span<const Vertex> neighbours = graph_->neighbours(from.before[side]);
+        const auto place = std::ranges::lower_bound(neighbours, tip);
+        // Training may go on to a vertex that is no neighbour.
+        if (place != neighbours.end() && *place == tip) {
+            range = &after_edge_[graph_->first_edge(from.before[side]) +
+                                 static_cast<std::size_t>(place - neighbours.begin())];
+        }
+    }
+    if (range->begin == kUnknown) {
+        range->begin = static_cast<std::uint32_t>(onward_.size());
+        const std::span<const Vertex> neighbours = graph_->neighbours(tip);
+        Onward onward;
+        for (const std::uint32_t place : (reach_ != nullptr ? *reach_ : all_).steps(tip)) {
+            if (turns_to(from, side, neighbours[place], onward)) onward_.push_back(onward);
+        }
+        range->end = static_cast<std::uint32_t>(onward_.size());
+    }
+    return *range;
+}
+
+bool LaneBeam::has_room(std::size_t number, Side side, Vertex vertex, double& width_m) const {
     const State& from = states_[number];
     const Side facing = opposite(side);
-    const Point& point = graph_->position(vertex);
-    const Point& tip = graph_->position(from.last[side]);
-    const Point& facing_tip = graph_->position(from.last[facing]);
-    const Point segment = point - tip;
-    const bool is_first = from.vertices[side] == 1;
-    if (turning_measure(from.direction[side], segment) >= (is_first ? first_turn_limit_ : turn_limit_)) {
-        return false;
-    }
-    step.width_m = foot_point(point, {graph_->position(from.before[facing]), facing_tip}).distance_m;
-    if (step.width_m <= bounds_.w_min_m || is_on_lane(number, vertex)) return false;
+    width_m = foot_point(graph_->position(vertex),
+                         {graph_->position(from.before[facing]), graph_->position(from.last[facing])})
+                  .distance_m;
+    return width_m > bounds_.w_min_m && !is_on_lane(number, vertex);
+}
 
-    step.turn_rad = turning_angle(from.direction[side], segment);
-    step.segment_m = segment.norm();
-    step.direction = segment / step.segment_m;
+double LaneBeam::bound_after(const State& from, Side side, const Onward& onward, double width_m) const {
+    const Side facing = opposite(side);
+    const double* const values = scores_->values.data();
+    double bound = from.score + onward.bound;
+    if (from.vertices[side] > 2) {
+        bound +=
+            nearly_score<kTurnChangeMeasure>(values, std::abs(onward.nearly_turn_rad - from.turn_rad[side]));
+    }
+    if (from.vertices[facing] > 1) {
+        bound += nearly_score<kSkewMeasure>(
+            values, nearly_angle_rad(turning_measure(from.direction[facing], onward.segment)));
+    }
+    bound += nearly_score<kWidthMeasure>(values, width_m);
+    bound += nearly_score<kWidthChangeMeasure>(values, std::abs(width_m - from.width_m));
+    return bound + nearly_score<kAdvanceMeasure>(values, advance_m(from, facing, onward));
+}
+
+double LaneBeam::advance_m(const State& from, Side facing, const Onward& onward) const {
+    const Point along = onward.direction + from.direction[facing];
+    const double along_length = along.norm();
+    const Point from_facing = graph_->position(onward.vertex) - graph_->position(from.last[facing]);
+    return along_length == 0.0 ? 0.0 : from_facing.dot(along) / along_length;
+}
+
+void LaneBeam::measure(const State& from, Side side, Onward& onward, double width_m, Step& step) {
+    const Side facing = opposite(side);
+    step.vertex = onward.vertex;
+    step.direction = onward.direction;
+    step.segment_m = onward.segment_m;
+    if (std::isnan(onward.turn_rad)) onward.turn_rad = turning_angle(from.direction[side], onward.segment);
+    step.turn_rad = onward.turn_rad;
+    step.width_m = width_m;
     StepMeasures& measures = step.measures;
     measures.fill(kNotThere);
     measures[kStepsMeasure] = 0.0;
     measures[kSegmentMeasure] = step.segment_m;
-    if (is_first) {
+    if (from.vertices[side] == 1) {
         measures[kFirstTurnMeasure] = std::abs(step.turn_rad);
     } else {
         measures[kTurnMeasure] = std::abs(step.turn_rad);
@@ -280,36 +383,45 @@ bool LaneBeam::measure(std::size_t number, Side side, Vertex vertex, Step& step)
         }
     }
     if (from.vertices[facing] > 1) {
-        measures[kSkewMeasure] = std::abs(turning_angle(from.direction[facing], segment));
+        measures[kSkewMeasure] = std::abs(turning_angle(from.direction[facing], onward.segment));
     }
     measures[kWidthMeasure] = step.width_m;
     measures[kWidthChangeMeasure] = std::abs(step.width_m - from.width_m);
-    const Point along = step.direction + from.direction[facing];
-    const double along_length = along.norm();
-    measures[kAdvanceMeasure] = along_length == 0.0 ? 0.0 : (point - facing_tip).dot(along) / along_length;
-    return true;
+    measures[kAdvanceMeasure] = advance_m(from, facing, onward);
+    const Neighbourhood& cones = about(from.last[side], onward.vertex, from.last[facing]);
+    measures[kBesideMeasure] = cones.beside;
+    measures[kCloseMeasure] = cones.close;
+    measures[kInsideMeasure] = cones.inside;
 }
 
-void LaneBeam::look_about(std::size_t number, Side side, Vertex vertex, Step& step) const {
-    const State& from = states_[number];
-    const Point& point = graph_->position(vertex);
-    const Point& facing_tip = graph_->position(from.last[opposite(side)]);
-    const Neighbourhood cones = neighbourhood(*graph_, from.last[side], graph_->position(from.last[side]),
-                                              facing_tip, point, point, facing_tip);
-    step.measures[kBesideMeasure] = cones.beside;
-    step.measures[kCloseMeasure] = cones.close;
-    step.measures[kInsideMeasure] = cones.inside;
+const Neighbourhood& LaneBeam::about(Vertex tip, Vertex vertex, Vertex facing) {
+    const std::array<Vertex, 3> vertices{tip, vertex, facing};
+    About& known = about_[(tip * 0x9e3779b1U ^ vertex * 0x85ebca6bU ^ facing * 0xc2b2ae35U) >> kAboutShift];
+    if (known.vertices != vertices) {
+        const Point& point = graph_->position(vertex);
+        const Point& facing_tip = graph_->position(facing);
+        known = {vertices,
+                 neighbourhood(*graph_, tip, graph_->position(tip), facing_tip, point, point, facing_tip)};
+    }
+    return known.cones;
 }
 
 std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
+    const State& from = states_[number];
+    const Side side = next_side(from);
+    Onward onward;
+    double width_m = 0.0;
+    if (!turns_to(from, side, vertex, onward) || !has_room(number, side, vertex, width_m)) return kNone;
     Step step;
-    const Side side = next_side(states_[number]);
-    if (!measure(number, side, vertex, step)) return kNone;
-    look_about(number, side, vertex, step);
+    measure(from, side, onward, width_m, step);
+    return add_state(number, side, step, from.score + scores_->score(step.measures));
+}
+
+std::size_t LaneBeam::add_state(std::size_t number, Side side, const Step& step, double score) {
     State state = states_[number];
     state.before[side] = state.last[side];
-    state.last[side] = vertex;
-    state.bits[word_of(vertex)] |= bit_of(vertex);
+    state.last[side] = step.vertex;
+    state.bits[word_of(step.vertex)] |= bit_of(step.vertex);
     state.direction[side] = step.direction;
     state.segment_m[side] = step.segment_m;
     state.turn_rad[side] = step.turn_rad;
@@ -319,7 +431,7 @@ std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
     state.parent = number;
     state.pushed = side;
     state.step = step.measures;
-    state.score += scores_->score(step.measures);
+    state.score = score;
     states_.push_back(state);
     return states_.size() - 1;
 }
@@ -338,29 +450,48 @@ void LaneBeam::keep_best() {
     // A heap, because only the first few are taken. Ties are decided by values that do not change when the
     // scene is mirrored. The first one's bound is replaced by its score, so scores are taken in their order.
     const auto is_worse = [](const Extension& a, const Extension& b) {
-        return std::tuple(-a.score, a.exact, a.length_m, a.low, a.high) >
-               std::tuple(-b.score, b.exact, b.length_m, b.low, b.high);
+        return std::tuple(a.exact, a.length_m, a.low, a.high) >
+               std::tuple(b.exact, b.length_m, b.low, b.high);
+    };
+    const auto is_behind = [&](const Ranked& a, const Ranked& b) {
+        return a.score != b.score ? a.score < b.score : is_worse(next_[a.number], next_[b.number]);
     };
     Step step;
-    std::make_heap(next_.begin(), next_.end(), is_worse);
+    heap_.clear();
+    for (const Extension& extension : next_)
+        heap_.push_back({extension.score, static_cast<std::uint32_t>(heap_.size())});
+    std::ranges::make_heap(heap_, is_behind);
     level_.clear();
-    while (!next_.empty() && level_.size() < width_) {
-        std::pop_heap(next_.begin(), next_.end(), is_worse);
-        Extension extension = next_.back();
-        next_.pop_back();
-        if (is_known(extension)) continue;
-        if (extension.exact) {
-            level_.push_back(extension.vertex == kNoVertex ? extension.parent
-                                                           : extend(extension.parent, extension.vertex));
+    steps_.clear();
+    while (!heap_.empty()) {
+        // The level may be full of states that are no lanes yet.
+        const bool is_full = level_.size() == width_;
+        if (is_full && heap_.front().score <= best_.score) break;
+        std::ranges::pop_heap(heap_, is_behind);
+        Ranked& last = heap_.back();
+        Extension& extension = next_[last.number];
+        if ((is_full && !extension.is_lane) || is_known(extension)) {
+            heap_.pop_back();
             continue;
         }
-        const Side side = next_side(states_[extension.parent]);
-        (void)measure(extension.parent, side, extension.vertex, step);
-        look_about(extension.parent, side, extension.vertex, step);
-        extension.score = score_after(extension.parent, step);
+        const std::size_t parent = extension.parent;
+        const Side side = extension.side;
+        if (extension.exact) {
+            heap_.pop_back();
+            if (extension.is_lane && extension.score > best_.score) best_ = extension;
+            if (is_full) continue;
+            level_.push_back(extension.vertex == kNoVertex
+                                 ? parent
+                                 : add_state(parent, side, steps_[extension.step], extension.score));
+            continue;
+        }
+        const State& from = states_[parent];
+        measure(from, side, onward_[extension.step], extension.width_m, step);
+        extension.score = last.score = from.score + scores_->score(step.measures);
         extension.exact = true;
-        next_.push_back(extension);
-        std::push_heap(next_.begin(), next_.end(), is_worse);
+        extension.step = static_cast<std::uint32_t>(steps_.size());
+        steps_.push_back(step);
+        std::ranges::push_heap(heap_, is_behind);
     }
 }
 
@@ -369,9 +500,8 @@ bool LaneBeam::is_known(const Extension& extension) const {
     std::array<Vertex, 2> last = from.last;
     std::array<Vertex, 2> before = from.before;
     if (extension.vertex != kNoVertex) {
-        const Side side = next_side(from);
-        before[side] = last[side];
-        last[side] = extension.vertex;
+        before[extension.side] = last[extension.side];
+        last[extension.side] = extension.vertex;
     }
     // States with a segment on each side and the same last vertices have the same continuations.
     return std::ranges::any_of(level_, [&](std::size_t better) {

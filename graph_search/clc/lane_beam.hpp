@@ -2,6 +2,7 @@
 
 #include "conelane/scene.hpp"
 #include "graph_search/clc/lane_constraints.hpp"
+#include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
 #include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_budget.hpp"
@@ -128,9 +129,33 @@ class LaneBeam {
     void restart(std::size_t number) { level_.assign(1, number); }
 
   private:
+    /// A vertex that may come next on a side. All of it depends on the side's last two vertices only, so it
+    /// is found once for each directed edge that the search meets.
+    struct Onward {
+        Vertex vertex;
+        Point segment;
+        Point direction;
+        double segment_m;
+        double nearly_turn_rad;  ///< see nearly_angle_rad; with sign
+        double turn_rad;         ///< the same exactly; NaN until a step is measured
+        double bound;  ///< on its scores and on those that are not known before the step is measured
+    };
+    /// A range of `onward_`.
+    struct Range {
+        std::uint32_t begin;
+        std::uint32_t end;
+    };
+    static constexpr std::uint32_t kUnknown = ~std::uint32_t{0};
+    /// A neighbourhood that was looked at. Most are asked for several times, for lanes that differ farther
+    /// back.
+    struct About {
+        std::array<Vertex, 3> vertices;
+        Neighbourhood cones;
+    };
     /// A step and what the state after it needs to know.
     struct Step {
         StepMeasures measures;
+        Vertex vertex;
         Point direction;
         double segment_m;
         double turn_rad;
@@ -138,25 +163,45 @@ class LaneBeam {
     };
     /// A state that may follow; only those that go on are stored.
     struct Extension {
-        double score;  ///< an upper bound until the neighbourhood of its step was looked at
+        double score;  ///< an upper bound until the step was measured
         double length_m;
+        double width_m;
         std::size_t parent;
         Vertex vertex;  ///< none: the parent itself, a starting pair
         Vertex low;     ///< the last vertices of both sides
         Vertex high;
+        std::uint32_t step = 0;  ///< in `steps_` if it was measured, else in `onward_`
         bool exact = true;
+        bool is_lane = false;  ///< two vertices a side
+        Side side = kLeft;     ///< of the vertex
+    };
+
+    /// An extension by its number in `next_`.
+    struct Ranked {
+        double score;
+        std::uint32_t number;
     };
 
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex vertex) const;
-    /// Whether the vertex can follow on the side, and the step if so, without measures of its neighbourhood.
-    [[nodiscard]] bool measure(std::size_t number, Side side, Vertex vertex, Step& step) const;
-    /// Adds the measures of the neighbourhood, which take most of the time.
-    void look_about(std::size_t number, Side side, Vertex vertex, Step& step) const;
-    /// The score of the state after that step, which has all its measures.
-    [[nodiscard]] double score_after(std::size_t number, const Step& step) const {
-        return states_[number].score + scores_->score(step.measures);
-    }
-    /// Makes a level of the best ones in `next_`. Looks about only where a bound could be among them.
+    /// Whether the vertex turns the side by less than the limit; sets `onward` if so.
+    [[nodiscard]] bool turns_to(const State& from, Side side, Vertex vertex, Onward& onward) const;
+    /// All vertices within reach that the side may turn to.
+    [[nodiscard]] Range onward(const State& from, Side side);
+    /// Whether the vertex is far enough from the other side, and not on the lane; sets the width.
+    [[nodiscard]] bool has_room(std::size_t number, Side side, Vertex vertex, double& width_m) const;
+    /// At least the score of the state after that step, and above it only by what the neighbourhood may take
+    /// off and by rounded angles. Takes a fraction of the time of `measure`.
+    [[nodiscard]] double bound_after(const State& from, Side side, const Onward& onward,
+                                     double width_m) const;
+    /// How far the vertex is ahead of the last one of the facing side, along the lane.
+    [[nodiscard]] double advance_m(const State& from, Side facing, const Onward& onward) const;
+    void measure(const State& from, Side side, Onward& onward, double width_m, Step& step);
+    /// What lies about the step from `tip` to `vertex`, beside the last vertex of the other side.
+    [[nodiscard]] const Neighbourhood& about(Vertex tip, Vertex vertex, Vertex facing);
+    /// Adds the state after that step, which has that score.
+    std::size_t add_state(std::size_t number, Side side, const Step& step, double score);
+    /// Makes a level of the best ones in `next_`, and replaces `best_` if there is a better one. Measures
+    /// only where a bound could be among them.
     void keep_best();
     /// Whether the level has a state with the same last vertices.
     [[nodiscard]] bool is_known(const Extension& extension) const;
@@ -170,11 +215,21 @@ class LaneBeam {
     double first_turn_limit_ = 0.0;
     Point heading_{0.0, 0.0};
     std::size_t width_ = 0;
-    double most_about_ = 0.0;  ///< at least what the neighbourhood of a step adds to its score
+    /// What a step adds to the score as such, at least what its neighbourhood adds, and at least what
+    /// rounding and nearly known angles may take off a bound.
+    double slack_ = 0.0;
+    double slack_per_m_ = 0.0;  ///< the last part again, for each metre of the segment
+    StepReach all_;             ///< used if no reach is given
+    std::vector<Onward> onward_;
+    std::vector<Range> after_first_;  ///< by vertex
+    std::vector<Range> after_edge_;   ///< by directed edge
+    std::vector<About> about_;        ///< by a hash of the vertices, the last one with each
     std::vector<State> states_;
     std::vector<std::size_t> level_;
     std::vector<Extension> next_;
-    Extension best_;  ///< of those with two vertices a side
+    std::vector<Ranked> heap_;
+    std::vector<Step> steps_;  ///< those of `next_` that were measured
+    Extension best_;           ///< of those with two vertices a side
 };
 
 }  // namespace conelane

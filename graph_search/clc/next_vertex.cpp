@@ -1,20 +1,13 @@
 #include "graph_search/clc/next_vertex.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <limits>
+#include <cstdint>
 #include <span>
 #include <utility>
 
 namespace conelane {
 namespace {
-
-double measure(double sine, double cosine) {
-    const double sum = sine + std::abs(cosine);
-    if (sum == 0.0) return 0.0;
-    return cosine >= 0.0 ? sine / sum : 2.0 - sine / sum;
-}
 
 /// Up to about this number, insertion sort is fastest.
 constexpr std::size_t kFew = 48;
@@ -37,17 +30,10 @@ void sort_by_cost(std::span<NextVertex> options) {
 
 }  // namespace
 
-double turning_measure(const Point& before, const Point& after) {
-    return measure(std::abs(cross(before, after)), before.dot(after));
-}
-
-double turning_measure(double angle_rad) {
-    return measure(std::abs(std::sin(angle_rad)), std::cos(angle_rad));
-}
-
 void NextVertexDecider::reset(const SearchGraph& graph, double distance_weight_per_m, StepReach* reach) {
     graph_ = &graph;
     reach_ = reach;
+    if (reach_ == nullptr) all_.reset(graph, 0);
     distance_weight_per_m_ = distance_weight_per_m;
     options_.clear();
     ranges_.assign(graph.directed_edge_count(), Range{kUnknown, kUnknown});
@@ -59,17 +45,15 @@ NextVertexDecider::Range NextVertexDecider::after_start(Vertex start, const Poin
 
 NextVertexDecider::Range NextVertexDecider::sorted(Vertex vertex, const Point& direction) {
     const auto begin = static_cast<std::uint32_t>(options_.size());
-    const double reach_m2 =
-        reach_ != nullptr ? reach_->squared_m2(vertex) : std::numeric_limits<double>::infinity();
-    SearchGraph::DirectedEdge edge = graph_->first_edge(vertex);
-    for (const Vertex neighbour : graph_->neighbours(vertex)) {
-        const SearchGraph::DirectedEdge to_neighbour = edge++;
+    const SearchGraph::DirectedEdge first = graph_->first_edge(vertex);
+    const std::span<const Vertex> neighbours = graph_->neighbours(vertex);
+    for (const std::uint32_t place : (reach_ != nullptr ? *reach_ : all_).steps(vertex)) {
+        const Vertex neighbour = neighbours[place];
         const Point segment = graph_->position(neighbour) - graph_->position(vertex);
-        if (segment.squaredNorm() > reach_m2) continue;
         const double turning = turning_measure(direction, segment);
         double cost = turning;
         if (distance_weight_per_m_ > 0.0) cost += distance_weight_per_m_ * segment.norm();
-        options_.push_back({neighbour, to_neighbour, turning, cost});
+        options_.push_back({neighbour, first + place, turning, cost});
     }
     sort_by_cost(std::span(options_).subspan(begin));
     return {begin, static_cast<std::uint32_t>(options_.size())};

@@ -2,19 +2,45 @@
 
 #include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_graph.hpp"
+#include "model/geometry.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
 namespace conelane {
 
+/// turning_measure of an angle by multiples of its absolute sine and of its cosine.
+[[nodiscard]] inline double turning_measure_of(double sine, double cosine) {
+    const double sum = sine + std::abs(cosine);
+    if (sum == 0.0) return 0.0;
+    return cosine >= 0.0 ? sine / sum : 2.0 - sine / sum;
+}
 /// A number that grows with the absolute angle between two directions: 0 for straight on, 1 for a right
 /// angle, 2 for a turn back; 0 if a direction has no length. Cheaper than the angle and as exact.
-[[nodiscard]] double turning_measure(const Point& before, const Point& after);
+[[nodiscard]] inline double turning_measure(const Point& before, const Point& after) {
+    return turning_measure_of(std::abs(cross(before, after)), before.dot(after));
+}
 /// turning_measure of an absolute angle in [0, pi] rad.
-[[nodiscard]] double turning_measure(double angle_rad);
+[[nodiscard]] inline double turning_measure(double angle_rad) {
+    return turning_measure_of(std::abs(std::sin(angle_rad)), std::cos(angle_rad));
+}
+/// The absolute angle of a turning_measure [rad], wrong by less than kNearlyAngle_rad. Cheaper than the
+/// angle.
+[[nodiscard]] inline double nearly_angle_rad(double turning_measure) {
+    // In [0, 1], the measure m belongs to the angle pi/4 + atan(2 m - 1).
+    const bool back = turning_measure > 1.0;
+    const double x = 2.0 * turning_measure - (back ? 3.0 : 1.0);
+    const double x2 = x * x;
+    // Abramowitz and Stegun, 4.4.47.
+    const double arc =
+        x * (0.9998660 + x2 * (-0.3302995 + x2 * (0.1801410 + x2 * (-0.0851330 + x2 * 0.0208351))));
+    return arc + (back ? 0.75 : 0.25) * std::numbers::pi;
+}
+inline constexpr double kNearlyAngle_rad = 2e-5;
 
 /// A vertex that may come next on a boundary.
 struct NextVertex {
@@ -62,6 +88,7 @@ class NextVertexDecider {
 
     const SearchGraph* graph_ = nullptr;
     StepReach* reach_ = nullptr;
+    StepReach all_;  ///< used if no reach is given
     double distance_weight_per_m_ = 0.0;
     std::vector<Range> ranges_;  ///< by directed edge
     std::vector<NextVertex> options_;

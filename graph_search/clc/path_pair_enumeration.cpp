@@ -138,10 +138,10 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
                               const PathPairVertices& guide) {
     if (budget.read_clock()) return false;
     begin(graph, start, heading, rules, pairs, guide);
-    std::size_t options = next_vertex_.option_count();
+    std::size_t options = next_vertex_->option_count();
     while (!calls_.empty()) {
         if (budget.iterations % kIterationsPerSum == 0) {
-            (void)budget.occupy(pairs.bytes() + next_vertex_.option_count() * sizeof(NextVertex));
+            (void)budget.occupy(pairs.bytes() + next_vertex_->option_count() * sizeof(NextVertex));
         }
         if (budget.spent()) return false;
         ++budget.iterations;
@@ -158,8 +158,8 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         // Measuring the lane takes time proportional to its length; options are sorted as they come.
         const std::size_t measured =
             constraints_.width().boundary(kLeft).size + constraints_.width().boundary(kRight).size;
-        (void)budget.spend(50 + measured + 10 * (next_vertex_.option_count() - options));
-        options = next_vertex_.option_count();
+        (void)budget.spend(50 + measured + 10 * (next_vertex_->option_count() - options));
+        options = next_vertex_->option_count();
     }
     return true;
 }
@@ -171,14 +171,18 @@ void PathPairEnumeration::begin(const SearchGraph& graph, StartPair start, const
     rules_ = rules;
     start_ = start;
     phi_max_ = turning_measure(rules.bounds.phi_max_rad);
-    next_vertex_.reset(graph, rules.next_vertex_distance_weight / rules.d_max_m, rules.reach);
+    next_vertex_ = rules.next_vertex;
+    if (next_vertex_ == nullptr) {
+        next_vertex_ = &own_next_vertex_;
+        next_vertex_->reset(graph, rules.next_vertex_distance_weight / rules.d_max_m, rules.reach);
+    }
     constraints_.reset(graph.position(start.left), graph.position(start.right), rules.bounds,
                        rules.width_backtracking);
     for (std::vector<std::uint8_t>& side : on_path_) side.assign(graph.vertex_count(), 0);
     on_path_[kLeft][start.left] = 1;
     on_path_[kRight][start.right] = 1;
     Call first{
-        {next_vertex_.after_start(start.left, heading), next_vertex_.after_start(start.right, heading)},
+        {next_vertex_->after_start(start.left, heading), next_vertex_->after_start(start.right, heading)},
         {0, 0},
         0,
         {kNoVertex, kNoVertex},
@@ -219,7 +223,7 @@ PathPairEnumeration::Choice PathPairEnumeration::choose(Call& call, const std::a
     }
     Side side = options[kLeft] != kNoOption ? kLeft : kRight;
     if (options[kLeft] != kNoOption && options[kRight] != kNoOption) side = choose_side(call, options);
-    const NextVertex next = next_vertex_.option(options[side]);
+    const NextVertex next = next_vertex_->option(options[side]);
     if (guided) {
         call.visited_early[side] = next.vertex;
         ++guide_position_[side];
@@ -233,8 +237,7 @@ PathPairEnumeration::Choice PathPairEnumeration::choose(Call& call, const std::a
 void PathPairEnumeration::extend(const Choice& choice, const std::array<bool, 2>& extensible,
                                  SearchBudget& budget, PathPairs& pairs) {
     const auto& [side, next, guided] = choice;
-    const Call& call = calls_.back();
-    const Vertex from = call.last[side];
+    const Vertex from = calls_.back().last[side];
     const bool first_segment = from == (side == kLeft ? start_.left : start_.right);
     const Point segment = graph_->position(next.vertex) - graph_->position(from);
     constraints_.push(side, graph_->position(next.vertex), first_segment || next.turning < phi_max_);
@@ -245,32 +248,32 @@ void PathPairEnumeration::extend(const Choice& choice, const std::array<bool, 2>
         follows_guide_ = false;
         return;
     }
-    Call below = call;
-    if (!guided) below.discrepancies += call.tried[side] - 1;
+    calls_.push_back(calls_.back());
+    Call& below = calls_.back();
+    if (!guided) below.discrepancies += below.tried[side] - 1;
     below.tried[side] = 0;
     below.last[side] = next.vertex;
     below.direction[side] = segment;
     below.length_m[side] += segment.norm();
     below.fingerprint.add(side, next.vertex);
     if (rules_.with_features) below.growth.push(*graph_, side, next.vertex);
-    below.step = pairs.add_step(call.step, side, next.vertex);
+    below.step = pairs.add_step(below.step, side, next.vertex);
     below.pushed = side;
     if (extended.feasible) {
         const double length_m = (below.length_m[kLeft] + below.length_m[kRight]) / 2.0;
         (void)budget.spend(pairs.add_lane({below.step, false, budget.iterations, length_m}, below.fingerprint,
                                           constraints_, below.growth, rules_));
     }
-    below.unvisited[side] = next_vertex_.after(from, next.vertex, next.edge);
+    below.unvisited[side] = next_vertex_->after(from, next.vertex, next.edge);
     below.visited_early[side] = kNoVertex;
     on_path_[side][next.vertex] = 1;
-    calls_.push_back(below);
 }
 
 bool PathPairEnumeration::drop_visited(Call& call, Side side) const {
     if (call.discrepancies + call.tried[side] > rules_.max_discrepancies) return false;
     NextVertexDecider::Range& unvisited = call.unvisited[side];
     while (unvisited.begin != unvisited.end) {
-        const Vertex vertex = next_vertex_.option(unvisited.begin).vertex;
+        const Vertex vertex = next_vertex_->option(unvisited.begin).vertex;
         if (on_path_[side][vertex] == 0 && vertex != call.visited_early[side]) return true;
         ++unvisited.begin;
     }
@@ -283,7 +286,7 @@ PathPairEnumeration::NextOptions PathPairEnumeration::guided_options(const Call&
         if (guide_position_[side] >= guide_[side].size()) continue;
         const NextVertexDecider::Range& unvisited = call.unvisited[side];
         for (std::uint32_t i = unvisited.begin; i != unvisited.end; ++i) {
-            const Vertex vertex = next_vertex_.option(i).vertex;
+            const Vertex vertex = next_vertex_->option(i).vertex;
             if (vertex == guide_[side][guide_position_[side]] && on_path_[side][vertex] == 0)
                 options[side] = i;
         }
@@ -299,7 +302,7 @@ Side PathPairEnumeration::choose_side(const Call& call, const NextOptions& optio
     std::array<BoundaryTip, 2> tips;
     std::array<Vertex, 2> next{};
     for (const Side side : {kLeft, kRight}) {
-        next[side] = next_vertex_.option(options[side]).vertex;
+        next[side] = next_vertex_->option(options[side]).vertex;
         tips[side] = {graph_->position(call.last[side]), call.direction[side], graph_->position(next[side])};
     }
     return left_right_decision(tips, next[kLeft] < next[kRight] ? kLeft : kRight);

@@ -35,6 +35,9 @@ struct EnumerationRules {
     /// NVD's order counts k; a lane's are added up.
     std::uint32_t max_discrepancies = std::numeric_limits<std::uint32_t>::max();
     bool with_features = false;  ///< whether PathPairs::features is filled
+    /// Of this graph, weight and reach; keeps from run to run what it has found. Null: each run has a new
+    /// one.
+    NextVertexDecider* next_vertex = nullptr;
     StepReach* reach = nullptr;  ///< of the search graph: longer steps are left out; null: none is
 };
 
@@ -192,7 +195,8 @@ class PathPairEnumeration {
 
     const SearchGraph* graph_ = nullptr;
     EnumerationRules rules_;
-    NextVertexDecider next_vertex_;
+    NextVertexDecider own_next_vertex_;
+    NextVertexDecider* next_vertex_ = nullptr;
     LaneConstraints constraints_;
     std::array<std::vector<std::uint8_t>, 2> on_path_;
     std::vector<Call> calls_;

@@ -300,9 +300,10 @@ StepScores neighbourhood_scores() {
 TEST(LaneBeam, TheNextLevelHoldsTheBestOfAllSteps) {
     for (unsigned seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
-        constexpr std::size_t kWidth = 6;
+        const std::size_t width = 1 + seed % 6;
         Search search(random_scene(seed, 25), neighbourhood_scores());
-        search.start(kWidth);
+        search.start(width);
+        double best_lane = -std::numeric_limits<double>::infinity();
         for (bool goes_on = true; goes_on;) {
             const std::vector<std::size_t> level(search.beam.level().begin(), search.beam.level().end());
             std::vector<LaneBeam::State> steps;
@@ -313,13 +314,16 @@ TEST(LaneBeam, TheNextLevelHoldsTheBestOfAllSteps) {
                     if (extended != LaneBeam::kNone) steps.push_back(search.beam.state(extended));
                 }
             }
+            for (const LaneBeam::State& step : steps) {
+                if (std::ranges::min(step.vertices) > 1) best_lane = std::max(best_lane, step.score);
+            }
             std::ranges::sort(steps, std::ranges::greater{}, &LaneBeam::State::score);
             std::vector<LaneBeam::State> best;
             for (const LaneBeam::State& step : steps) {
                 const bool known = std::ranges::any_of(best, [&](const LaneBeam::State& better) {
                     return better.last == step.last && better.before == step.before;
                 });
-                if (!known && best.size() < kWidth) best.push_back(step);
+                if (!known && best.size() < width) best.push_back(step);
             }
             goes_on = search.beam.advance(search.budget);
             ASSERT_EQ(search.beam.level().size(), best.size());
@@ -328,6 +332,11 @@ TEST(LaneBeam, TheNextLevelHoldsTheBestOfAllSteps) {
                 EXPECT_EQ(search.beam.state(search.beam.level()[i]).last, best[i].last);
             }
         }
+        // The best lane may be a step that no level has room for.
+        Search again(search.scene, search.scores);
+        const std::optional<std::size_t> found = again.best(width);
+        ASSERT_TRUE(found);
+        EXPECT_EQ(again.beam.state(*found).score, best_lane);
     }
 }
 

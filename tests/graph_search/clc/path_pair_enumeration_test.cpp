@@ -323,6 +323,41 @@ TEST(PathPairEnumeration, LeavesOutStepsBeyondTheReach) {
 
 // Lemma 3, first case, does not hold as printed: the right boundary passes vertex 2 at more than 6.5 m, turns
 // back beyond the end of the left one, and comes within 6.5 m of vertex 2 after all.
+/// The second run meets only orders that the first one, from another start, has found.
+TEST(PathPairEnumeration, MayShareTheNextVerticesOfEarlierRuns) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = random_map(seed, 11);
+        EnumerationRules rules;
+        rules.next_vertex_distance_weight = 1.45;
+        SearchGraph graph;
+        graph.build(points, rules.d_max_m);
+        NextVertexDecider shared;
+        shared.reset(graph, rules.next_vertex_distance_weight / rules.d_max_m);
+        const auto found = [&](NextVertexDecider* next_vertex, const std::vector<StartPair>& starts) {
+            rules.next_vertex = next_vertex;
+            PathPairEnumeration enumeration;
+            std::vector<std::vector<PathPairVertices>> result;
+            for (const StartPair& start : starts) {
+                PathPairs pairs;
+                SearchBudget budget;
+                budget.iteration_limit = 3000;
+                (void)enumeration.run(graph, start, kHeading, rules, budget, pairs);
+                result.emplace_back();
+                for (const PathPair& pair : pairs.found()) result.back().push_back(pairs.vertices(pair));
+            }
+            return result;
+        };
+        const std::vector<StartPair> starts{{0, 1}, {1, 0}, {0, 1}};
+        const auto alone = found(nullptr, starts);
+        EXPECT_EQ(found(&shared, starts), alone);
+        const std::size_t options = shared.option_count();
+        EXPECT_GT(options, 0U);
+        (void)found(&shared, {{0, 1}});
+        EXPECT_LE(shared.option_count() - options, 2 * points.size()) << "those of the start alone";
+    }
+}
+
 TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {
     const std::vector<Point> points{{0.5, 1.9},    {0.3, -1.8},   {4.11, 3.9},   {7.02, 2.64},
                                     {2.76, -3.25}, {6.63, -2.21}, {10.58, 0.18}, {9.72, 2.98}};

@@ -90,6 +90,13 @@ TEST(TurningMeasure, GrowsWithTheAngleToEitherSide) {
     }
 }
 
+TEST(TurningMeasure, GivesTheAngleNearly) {
+    for (int i = 0; i <= 18000; ++i) {
+        const double angle_rad = i * std::numbers::pi / 18000.0;
+        ASSERT_NEAR(nearly_angle_rad(turning_measure(angle_rad)), angle_rad, kNearlyAngle_rad) << i;
+    }
+}
+
 // As in Figure 4: of four neighbours, the one that continues the last segment comes first.
 TEST(NextVertexDecider, OrdersNeighboursByTheAngleOfTheTurn) {
     SearchGraph graph;

@@ -20,11 +20,15 @@ TEST(StepReach, EndsAtTheLastOfTheNearestNeighbours) {
     reach.reset(graph, 2);
     EXPECT_DOUBLE_EQ(reach.squared_m2(0), 4.0);
     EXPECT_DOUBLE_EQ(reach.squared_m2(0), 4.0) << "asked for again";
+    EXPECT_THAT(reach.steps(0), testing::ElementsAre(1, 3)) << "vertices 2 and 4 of 1 to 4";
     reach.reset(graph, 3);
+    EXPECT_THAT(reach.steps(0), testing::ElementsAre(1, 2, 3)) << "without a question before";
     EXPECT_DOUBLE_EQ(reach.squared_m2(0), 9.0);
     reach.reset(graph, 4);
     EXPECT_EQ(reach.squared_m2(0), kInfinity) << "no more than four neighbours";
+    EXPECT_THAT(reach.steps(0), testing::ElementsAre(0, 1, 2, 3));
     EXPECT_EQ(reach.squared_m2(5), kInfinity) << "no neighbour";
+    EXPECT_THAT(reach.steps(5), testing::IsEmpty());
     reach.reset(graph, 0);
     EXPECT_EQ(reach.squared_m2(0), kInfinity) << "0: all";
 }
