@@ -39,6 +39,7 @@ constexpr std::array<LearnedFeature, kTurnFeatures> kTurn{{
     {"inside", "1", "cones in the triangle that it cuts off"},
     {"length", "8 m", "both edges together"},
     {"gap", "3 m", "what its edges have beyond 5 m"},
+    {"bent_gap", "1", "angle times gap: a cone may be missing in a bend"},
     {"facing", "1", "mean of both edges' facing costs"},
     {"facing_change", "1", "one edge has a partner across and the other has none"},
     {"crowd", "2", "cones within 3.5 m of its middle cone"},

@@ -180,6 +180,7 @@ std::array<double, kTurnFeatures> LearnedFeatures::turn(std::size_t edge_i, std:
     }
     const double angle = std::sqrt(std::sqrt(angle_cost));
     const auto gap = [](double length) { return std::max(0.0, length - kGapBegins_m); };
+    const double beyond = (gap(back_m) + gap(on_m)) / kGapScale_m;
     const double facing_i = first.facing_cost;
     const double facing_k = second.facing_cost;
     return {1.0,
@@ -189,7 +190,8 @@ std::array<double, kTurnFeatures> LearnedFeatures::turn(std::size_t edge_i, std:
             std::min(square(angle), kMaxTurnCost),
             std::min(inside, kMaxCount),
             std::min((back_m + on_m) / kLengthScale_m, kMaxLength),
-            (gap(back_m) + gap(on_m)) / kGapScale_m,
+            beyond,
+            std::min(angle * beyond, kMaxTurnCost),
             0.5 * (facing_i + facing_k),
             std::abs(facing_i - facing_k),
             cone_crowd_[middle],

@@ -13,7 +13,7 @@
 namespace conelane {
 
 inline constexpr std::size_t kEdgeFeatures = 15;
-inline constexpr std::size_t kTurnFeatures = 13;
+inline constexpr std::size_t kTurnFeatures = 14;
 inline constexpr std::size_t kNearEndFeatures = 7;
 inline constexpr std::size_t kFarEndFeatures = 6;
 

@@ -98,7 +98,8 @@ class LearnedReference {
             LearnedPart::turn,
             {Real(1), least(angle * angle * angle * angle, 4), least(uneven * uneven, 4), least(angle, 4),
              least(angle * angle, 4), least(inside, 2), least((m + n) / 8, 3), (beyond(m) + beyond(n)) / 3,
-             (one + other) / 2, size(one - other), crowd_at(middle), least(length(place_[middle]) / 30, 2),
+             least(angle * (beyond(m) + beyond(n)) / 3, 4), (one + other) / 2, size(one - other),
+             crowd_at(middle), least(length(place_[middle]) / 30, 2),
              least(10 * size(area) / (m * n * std::max(chord, Real(0.1))), 3)});
         return std::max(cost, Real(0));
     }
