@@ -308,7 +308,7 @@ FrontTrainingRun learn_colors(FrontTrainingRunOptions run, const LearningOptions
     training.initial_name = name_of_first;
     training.only_colors = true;
     training.scenes.colored_share = kColoredShare;
-    training.scenes.noise_scenes = false;
+    training.scenes.noise_share = 0.0;
     training.imitation_steps = 0;
     training.search_steps = kColoredSearchSteps;
     training.search_rate = kColoredSearchRate;

@@ -53,9 +53,6 @@ constexpr double kMaxUnseen = 0.6;       ///< share of a side's cones whose colo
 constexpr double kUsualFalseShare =
     0.5;                             ///< a third of the false positives is of unknown color, else any share
 constexpr double kSoftShare = 0.3;   ///< colors come as probabilities
-constexpr double kNoiseShare = 0.2;  ///< of the draws that have a scene of false cones alone
-constexpr std::size_t kFewestNoise = 4;  ///< cones of such a scene
-constexpr std::size_t kMostNoise = 60;
 constexpr double kCleanShare = 0.1;  ///< without false positives
 
 double uniform(Random& random, double low, double high) {
@@ -342,11 +339,16 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
         }
     }
     Random noise_random = generator_of(name + "/noise", seed_);
-    if (options_.noise_scenes && one_in(noise_random, kNoiseShare)) {
+    if (one_in(noise_random, options_.noise_share)) {
         Scene noise;
         noise.id = name + "/noise";
-        const std::size_t count = kFewestNoise + any_below(noise_random, kMostNoise - kFewestNoise + 1);
-        add_false_positives(noise, static_cast<long>(count), uniform(noise_random, 15.0, 55.0), noise_random);
+        const auto [fewest, most] = options_.noise_cones;
+        const std::size_t count = fewest + any_below(noise_random, most - fewest + 1);
+        const auto [nearest_m, farthest_m] = options_.noise_ranges_m;
+        // A distribution without width would never give a number.
+        const double range_m =
+            nearest_m < farthest_m ? uniform(noise_random, nearest_m, farthest_m) : nearest_m;
+        add_false_positives(noise, static_cast<long>(count), range_m, noise_random);
         if (colored) {
             const ColorSight sight(noise_random);
             for (Cone& cone : noise.cones) sight.show(cone, std::nullopt);

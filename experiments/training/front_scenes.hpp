@@ -4,6 +4,7 @@
 #include "evaluation/tracks/track.hpp"
 #include "evaluation/tracks/track_boundaries.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -21,8 +22,11 @@ struct FrontSceneOptions {
     /// A second course beside it, whose cones are false: better among parallel legs, worse elsewhere.
     bool other_course = false;
     double colored_share = 0.5;  ///< of the draws that show colors, at any rates of wrong and unknown ones
-    bool noise_scenes = true;    ///< a fifth of the draws has a scene of false cones alone, for the judge
-    double highest_rate = 0.7;   ///< some views reach it if false positives persist at a rate of 0.5
+    /// Share of the draws that have a scene of false cones alone, for the judge.
+    double noise_share = 0.2;
+    std::array<std::size_t, 2> noise_cones{4, 60};     ///< fewest and most of such a scene
+    std::array<double, 2> noise_ranges_m{15.0, 55.0};  ///< of the half disc that holds them
+    double highest_rate = 0.7;  ///< some views reach it if false positives persist at a rate of 0.5
 };
 
 /// Scenes for training, drawn from whole courses. Each draw takes a course, drives it in a random direction,

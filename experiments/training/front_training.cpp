@@ -17,6 +17,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include <boost/random/normal_distribution.hpp>
 #include <oneapi/tbb/info.h>
@@ -73,6 +74,20 @@ void leave_out(const std::vector<std::string>& names, FrontWeights& weights) {
             std::fill_n(networks[network]->hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits),
                         kFrontUnits, 0.0F);
         }
+    }
+}
+
+/// The networks of the judge by their names in FrontTrainingOptions::judge_parts.
+constexpr std::array<std::pair<std::string_view, FrontNetworkWeights FrontWeightSet::*>, 3> kJudgeParts{
+    {{"rank", &FrontWeightSet::rank},
+     {"usable", &FrontWeightSet::usable},
+     {"right", &FrontWeightSet::right}}};
+
+/// Sets the derivatives of the judge's other networks to 0.
+void keep_only(const std::vector<std::string>& parts, FrontWeights& derivatives) {
+    for (const auto& [name, network] : kJudgeParts) {
+        if (std::ranges::find(parts, name) != parts.end()) continue;
+        derivatives.*network = FrontNetworkWeights::zero((derivatives.*network).inputs);
     }
 }
 
@@ -166,6 +181,7 @@ class Training {
         }
         if (scenes == 0) return;
         leave_out(options_.without, sum);
+        if (stage(number) == FrontProgress::Stage::judging) keep_only(options_.judge_parts, sum);
         Eigen::ArrayXd derivatives = flat(sum) / static_cast<double>(scenes);
         const double length = std::sqrt(derivatives.square().sum());
         if (length > kMaxGradient) derivatives *= kMaxGradient / length;
@@ -318,6 +334,19 @@ void validate(const FrontTrainingOptions& options) {
     require(!options.only_colors || options.initial, "only_colors", "needs weights to begin with");
     require(options.scenes.colored_share >= 0.0 && options.scenes.colored_share <= 1.0, "colored_share",
             "must be in [0, 1]");
+    const auto [fewest, most] = options.scenes.noise_cones;
+    const auto [nearest_m, farthest_m] = options.scenes.noise_ranges_m;
+    require(options.scenes.noise_share >= 0.0 && options.scenes.noise_share <= 1.0, "noise_share",
+            "must be in [0, 1]");
+    require(fewest > 0 && fewest <= most, "noise_cones", "must be positive, the smaller number first");
+    require(nearest_m > 0.0 && nearest_m <= farthest_m && std::isfinite(farthest_m), "noise_ranges_m",
+            "must be positive, the smaller number first");
+    for (const std::string& name : options.judge_parts) {
+        const bool known = std::ranges::find(kJudgeParts, name, [](const auto& part) {
+                               return part.first;
+                           }) != kJudgeParts.end();
+        if (!known) throw InvalidInput("judge_parts", "no network of the judge is called " + name);
+    }
     for (const std::string& name : options.without) {
         const auto all = cost_inputs();
         const bool known = std::ranges::any_of(

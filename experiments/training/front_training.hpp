@@ -30,7 +30,10 @@ struct FrontTrainingOptions {
     std::size_t imitation_steps = 800;  ///< of teacher forcing
     std::size_t search_steps = 7000;    ///< through the search, after these
     std::size_t judge_steps = 4000;     ///< of FrontJudge, after these
-    double imitation_rate = 3e-3;       ///< learning rates of Adam, which fall to 0 along a cosine
+    /// Networks of the judge that are learned in these steps; the others stay as they are. `usable` is
+    /// no input of the others, so without `rank` and `right` the order of the lanes does not change.
+    std::vector<std::string> judge_parts{"rank", "usable", "right"};
+    double imitation_rate = 3e-3;  ///< learning rates of Adam, which fall to 0 along a cosine
     double search_rate = 1e-3;
     double judge_rate = 2e-3;
     /// Target share of lanes that are right up to their trusted length.

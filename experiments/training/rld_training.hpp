@@ -31,7 +31,7 @@ struct RldTrainingOptions {
     /// Limits and costs to which the learned ones are added. If they have learned costs, the training begins
     /// with them, and linear ones get hidden units; otherwise it begins with shape_as_learned_costs.
     RldParameters parameters = rld_learning_parameters();
-    FrontSceneOptions scenes{.colored_share = 0.0, .noise_scenes = false, .highest_rate = 0.6};
+    FrontSceneOptions scenes{.colored_share = 0.0, .noise_share = 0.0, .highest_rate = 0.6};
     RldMargin margin;
     std::size_t units = 16;  ///< hidden units of each network; 0 for linear costs
     /// Limit of the search for a rival, in steps of about a nanosecond.

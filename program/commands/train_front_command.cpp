@@ -105,6 +105,13 @@ void add_train_front_command(CLI::App& train_command) {
     add_count_option(command, "--search-steps", training.search_steps, "steps of Adam through the search", 0);
     add_count_option(command, "--judge-steps", training.judge_steps,
                      "steps of Adam of the judge of whole lanes", 0);
+    command
+        .add_option(
+            "--judge-parts", training.judge_parts,
+            "networks of the judge that are learned: rank, usable (its confidence), right; the others "
+            "stay as they are. With usable alone the order of the lanes does not change")
+        ->delimiter(',')
+        ->capture_default_str();
     add_number_option(command, "--imitation-rate", training.imitation_rate, "learning rate move by move");
     add_number_option(command, "--search-rate", training.search_rate, "learning rate through the search");
     add_number_option(command, "--judge-rate", training.judge_rate, "learning rate of the judge");
@@ -142,8 +149,19 @@ void add_train_front_command(CLI::App& train_command) {
         "--only-colors", training.only_colors,
         "with --from: only the set of weights for scenes with colours is learned, so that without colours "
         "nothing changes");
-    command.add_flag("!--no-noise-scenes", training.scenes.noise_scenes,
-                     "the judge sees no scenes of false cones alone; else a fifth of the draws has one");
+    add_number_option(command, "--noise-share", training.scenes.noise_share,
+                      "share of the draws that have a scene of false cones alone, for the judge");
+    command.add_option("--noise-cones", training.scenes.noise_cones, "fewest and most cones of such a scene")
+        ->capture_default_str();
+    command
+        .add_option("--noise-ranges", training.scenes.noise_ranges_m,
+                    "smallest and largest radius of the half disc that holds them [m]")
+        ->capture_default_str();
+    command
+        .add_flag_callback(
+            "--no-noise-scenes", [&training] { training.scenes.noise_share = 0.0; },
+            "the judge sees no scenes of false cones alone")
+        ->excludes("--noise-share");
     command.add_flag("!--no-short-sight", training.scenes.short_sight,
                      "true cones are seen as far as false ones");
     command

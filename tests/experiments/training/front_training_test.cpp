@@ -21,6 +21,7 @@
 #include <filesystem>
 #include <fstream>
 #include <ranges>
+#include <set>
 #include <sstream>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -241,6 +242,39 @@ TEST(FrontScenes, SomeDrawsHaveASceneOfFalseConesAlone) {
     EXPECT_NEAR(static_cast<double>(noisy) / 200.0, 0.2, 0.08);
 }
 
+TEST(FrontScenes, ScenesOfFalseConesHaveTheShareCountsAndRangesThatAreGiven) {
+    FrontSceneOptions options;
+    options.scenes_per_draw = 1;
+    options.noise_share = 0.7;
+    options.noise_cones = {8, 12};
+    options.noise_ranges_m = {15.0, 20.0};
+    const FrontScenes scenes(courses(), options, 3);
+    std::set<std::size_t> counts;
+    double farthest_m = 0.0;
+    std::size_t noisy = 0;
+    for (std::uint64_t number = 0; number < 200; ++number) {
+        for (const Scene& scene : scenes.draw(number).noise) {
+            ++noisy;
+            counts.insert(scene.cones.size());
+            for (const Cone& cone : scene.cones) farthest_m = std::max(farthest_m, cone.position.norm());
+        }
+    }
+    EXPECT_NEAR(static_cast<double>(noisy) / 200.0, 0.7, 0.1);
+    EXPECT_THAT(counts, testing::ElementsAre(8U, 9U, 10U, 11U, 12U));
+    EXPECT_LE(farthest_m, 20.0);
+    EXPECT_GT(farthest_m, 19.0);
+    options.noise_ranges_m = {17.0, 17.0};
+    const FrontScenes of_one_range(courses(), options, 3);
+    for (std::uint64_t number = 0; number < 20; ++number) {
+        for (const Scene& scene : of_one_range.draw(number).noise) {
+            for (const Cone& cone : scene.cones) EXPECT_LE(cone.position.norm(), 17.0);
+        }
+    }
+    options.noise_share = 0.0;
+    const FrontScenes without(courses(), options, 3);
+    for (std::uint64_t number = 0; number < 50; ++number) EXPECT_TRUE(without.draw(number).noise.empty());
+}
+
 /// The judge learns that lanes in such scenes are wrong.
 TEST(FrontJudgeLearner, TakesNoLaneOfNoiseForUsable) {
     const FrontScenes scenes(courses(), {}, 3);
@@ -290,6 +324,25 @@ TEST(FrontTraining, BeginsWithTheWeightsThatAreGiven) {
     EXPECT_EQ(train_front(courses(), {}, options, {}).colored, options.initial->colored);
     options.initial->stop.linear.pop_back();
     EXPECT_THROW((void)train_front(courses(), {}, options, {}), InvalidInput);
+}
+
+/// The networks of the judge that are not named stay as they are.
+TEST(FrontTraining, LearnsTheNamedPartsOfTheJudgeAlone) {
+    FrontTrainingOptions options = quick();
+    options.imitation_steps = options.search_steps = 0;
+    options.initial = random_front_weights(4);
+    const auto changed = [&](const std::string& part) {
+        options.judge_parts = {part};
+        const FrontWeights weights = train_front(courses(), {}, options, {});
+        std::vector<std::string> names;
+        if (weights.rank != options.initial->rank) names.emplace_back("rank");
+        if (weights.usable != options.initial->usable) names.emplace_back("usable");
+        if (weights.right != options.initial->right) names.emplace_back("right");
+        return names;
+    };
+    for (const std::string part : {"rank", "usable", "right"})
+        EXPECT_THAT(changed(part), testing::ElementsAre(part));
+    EXPECT_THAT(describe_training(courses(), options), testing::HasSubstr(R"("parts":["right"])"));
 }
 
 /// The set for colors learns the same as a training of one set that begins with the same numbers.
@@ -491,6 +544,12 @@ TEST(FrontTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](auto& o) { o.draws_per_step = 0; }), "draws_per_step");
     EXPECT_EQ(key_of([](auto& o) { o.scenes.scenes_per_draw = 0; }), "scenes_per_draw");
     EXPECT_EQ(key_of([](auto& o) { o.without = {"turn", "colour"}; }), "without");
+    EXPECT_EQ(key_of([](auto& o) { o.judge_parts = {"usable", "left"}; }), "judge_parts");
+    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_share = 1.1; }), "noise_share");
+    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_cones = {9, 8}; }), "noise_cones");
+    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_cones = {0, 8}; }), "noise_cones");
+    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_ranges_m = {0.0, 8.0}; }), "noise_ranges_m");
+    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_ranges_m = {9.0, 8.0}; }), "noise_ranges_m");
     EXPECT_EQ(key_of([](auto& o) { o.imitation_rate = -1.0; }), "imitation_rate");
     EXPECT_EQ(key_of([](auto& o) { o.search_rate = 0.0; }), "search_rate");
     EXPECT_EQ(key_of([](auto& o) { o.threads = 0; }), "threads");
