@@ -242,7 +242,8 @@ constexpr double kColoredShare = 0.85;
 // The learned costs of RLD, with the options of the shipped ones. Their training draws its scenes itself, as
 // that of front does.
 
-constexpr std::size_t kLearnedRldSteps = 400;
+constexpr std::size_t kLearnedRldUnits = 16;
+constexpr std::size_t kLearnedRldSteps = 2000;
 constexpr double kLearnedRldRate = 0.02;
 
 void learn_rld(const LearningOptions& options, const fs::path& folder) {
@@ -250,7 +251,7 @@ void learn_rld(const LearningOptions& options, const fs::path& folder) {
     if (fs::exists(file)) return;
     RldTrainingRunOptions run;
     run.tracks = options.tracks;
-    run.training.units = 0;
+    run.training.units = kLearnedRldUnits;
     run.training.steps =
         static_cast<std::size_t>(std::lround(options.rld_steps * static_cast<double>(kLearnedRldSteps)));
     run.training.learning_rate = kLearnedRldRate;

@@ -322,7 +322,7 @@ TEST(LearnedCosts, AreCheckedBeforeTheyAreUsed) {
     EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::edge).linear.pop_back(); }),
               "edge.linear: must have 15 numbers, not 14");
     EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::turn).hidden.pop_back(); }),
-              "turn.hidden: must have 39 numbers, not 38");
+              "turn.hidden: must have 42 numbers, not 41");
     EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::far_end).output[1] = std::nan(""); }),
               "far_end.output: must hold numbers between -1e6 and 1e6");
     RldParameters parameters;

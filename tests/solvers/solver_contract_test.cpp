@@ -284,7 +284,7 @@ TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
 TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
     int changed = 0;
     int over_gaps = 0;
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 6 + seed % 4);
         RldParameters parameters;

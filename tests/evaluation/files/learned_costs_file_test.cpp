@@ -59,7 +59,7 @@ TEST_F(LearnedCostsFileTest, ABadFileIsOneClearError) {
     EXPECT_EQ(fault_of(with(text, "\"far_end\":[", "\"end\":[")),
               "features: 'end' is not a list of the library");
     EXPECT_EQ(fault_of(with(text, "\"turn_output\": [0]", "\"turn_output\": [0,0]")),
-              "turn.hidden: must have 26 numbers, not 13");
+              "turn.hidden: must have 28 numbers, not 14");
     EXPECT_EQ(fault_of(with(text, "\"turn_output\": [0]", "\"turn_output\": [true]")),
               "turn_output: number 0 (from 0) is not a number");
     EXPECT_EQ(fault_of(with(text, "\"turn_output\": [0]", "\"turn_output\": [1e400]")),
