@@ -30,7 +30,7 @@ using testing::Not;
 const std::string kFolds =
     "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
     "--learn-condition paper --learn-every 60 --variants 0 --evaluations 2 --condition paper --fp 0.3 "
-    "--range 30 --every 40 --front-steps 0.002 --rld-steps 0.01 --out cv --methods ";
+    "--range 30 --every 40 --front-steps 0.002 --rld-steps 0.002 --out cv --methods ";
 
 std::vector<std::string> courses_learned(const std::string& weights) {
     return nlohmann::json::parse(weights).at("training").at("tracks").get<std::vector<std::string>>();
@@ -126,7 +126,7 @@ TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
     const std::string colors =
         "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
         "--learn-condition paper --learn-every 60 --condition paper --fp 0.3 --range 30 --every 40 "
-        "--front-steps 0.002 --rld-steps 0.01 --colors-from cv/folds ";
+        "--front-steps 0.002 --rld-steps 0.002 --colors-from cv/folds ";
     const Outcome outcome = run(colors + "--color --color-wrong 0.05 --out colored --methods " + methods);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     for (const std::string fold : {"a", "b"}) {
