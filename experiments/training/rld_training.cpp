@@ -26,10 +26,15 @@ constexpr double kMinDeviation = 1e-3;
 /// Limit of the gradient's length, because single scenes may be completely wrong.
 constexpr double kMaxGradient = 20.0;
 
-double& weight(LearnedCosts& costs, LearnedPart part, std::string_view name) {
+/// The place of a feature among those of its part.
+std::size_t place_of(LearnedPart part, std::string_view name) {
     const auto features = learned_features(part);
     const auto found = std::ranges::find(features, name, &LearnedFeature::name);
-    return costs.of(part).linear.at(static_cast<std::size_t>(found - features.begin()));
+    return static_cast<std::size_t>(found - features.begin());
+}
+
+double& weight(LearnedCosts& costs, LearnedPart part, std::string_view name) {
+    return costs.of(part).linear.at(place_of(part, name));
 }
 
 /// The result of one draw of a step.
@@ -176,6 +181,12 @@ LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, st
         boost::random::normal_distribution<double> of_output(0.0,
                                                              0.02 / std::sqrt(static_cast<double>(units)));
         for (double& number : network.output) number = of_output(random);
+    }
+    // Without colours and confidences in the training these features are 0, and no weight of theirs changes.
+    for (const std::string_view evidence : {"color_cost", "same_color", "doubt"}) {
+        const std::size_t place = place_of(LearnedPart::edge, evidence);
+        std::fill_n(costs.of(LearnedPart::edge).hidden.begin() + static_cast<std::ptrdiff_t>(place * units),
+                    units, 0.0);
     }
     return costs;
 }

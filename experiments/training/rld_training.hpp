@@ -22,7 +22,8 @@ namespace conelane::experiments {
 /// and ends, which changes no optimum.
 [[nodiscard]] LearnedCosts shape_as_learned_costs();
 
-/// Linear costs with this number of hidden units, drawn by the seed, which contribute almost nothing.
+/// Linear costs with this number of hidden units, drawn by the seed, which contribute almost nothing. They do
+/// not depend on colours and confidences.
 /// Precondition: `linear` has none.
 [[nodiscard]] LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units,
                                              std::uint64_t seed);

@@ -168,6 +168,22 @@ TEST(RldTraining, LowersTheLossOfAScene) {
     EXPECT_GE(lowered, tried - 1);
 }
 
+/// What the training has not seen has no weight: colours and confidences change no cost.
+TEST(RldTraining, CostsLearnedWithoutColorsDoNotDependOnThem) {
+    RldTrainingOptions options = quick();
+    ASSERT_GT(options.units, 0U);
+    const LearnedCosts costs = train_rld(courses(), options, {});
+    const auto features = learned_features(LearnedPart::edge);
+    std::vector<double> plain(features.size(), 0.3);
+    std::vector<double> colored = plain;
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        const std::string_view name = features[i].name;
+        if (name == "color_cost" || name == "same_color" || name == "doubt") plain[i] = 0.0;
+    }
+    EXPECT_NE(plain, colored);
+    EXPECT_EQ(costs.of(LearnedPart::edge)(plain), costs.of(LearnedPart::edge)(colored));
+}
+
 TEST(RldTraining, GivesTheSameCostsOnAnyNumberOfThreadsAndOthersFromAnotherSeed) {
     RldTrainingOptions options = quick();
     const LearnedCosts costs = train_rld(courses(), options, {});
