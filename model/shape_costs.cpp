@@ -21,6 +21,7 @@ struct PlacedEdge {
     Point middle;
     Point direction;  ///< unit length; zero for an edge of zero length
     double length_m;
+    double strip = 0.0;  ///< of PlacedEdges
 };
 
 PlacedEdge placed(const Scene& scene, const ProblemEdge& edge, std::size_t number) {
@@ -38,8 +39,9 @@ bool share_a_cone(const ProblemEdge& a, const ProblemEdge& b) {
 class PlacedEdges {
   public:
     PlacedEdges(std::vector<PlacedEdge> edges, double strip_m) : edges_(std::move(edges)), strip_m_(strip_m) {
-        std::ranges::sort(edges_, {}, [this](const PlacedEdge& edge) {
-            return std::tuple(strip(edge.middle), edge.middle.x(), edge.number);
+        for (PlacedEdge& edge : edges_) edge.strip = strip(edge.middle);
+        std::ranges::sort(edges_, {}, [](const PlacedEdge& edge) {
+            return std::tuple(edge.strip, edge.middle.x(), edge.number);
         });
     }
 
@@ -48,9 +50,7 @@ class PlacedEdges {
         std::array<std::span<const PlacedEdge>, 3> lists;
         for (int k = 0; k < 3; ++k) {
             const double in_strip = strip(place) + k - 1;
-            const auto key = [this](const PlacedEdge& edge) {
-                return std::pair(strip(edge.middle), edge.middle.x());
-            };
+            const auto key = [](const PlacedEdge& edge) { return std::pair(edge.strip, edge.middle.x()); };
             const auto begin =
                 std::ranges::lower_bound(edges_, std::pair(in_strip, place.x() - strip_m_), {}, key);
             const auto end =

@@ -16,8 +16,9 @@ struct CrossValidationOptions {
     LearningOptions learning;            ///< its tracks are those of a fold
     /// Learned files FOLDER/FAMILY/... of another cross-validation with the same families; empty: learn.
     std::filesystem::path folds;
-    /// FOLDER/FAMILY/... of another cross-validation with the same families, whose scenes had no colors: only
-    /// what the detectors make of colors is learned. Empty: everything is. Only for scenes with colors.
+    /// FOLDER/FAMILY/... of another cross-validation with the same families, whose scenes had no colors:
+    /// `front` learns its set for colors, `rld-shape` its weight of colors, and `rld-learned` goes on with all
+    /// costs. Empty: everything is learned from the beginning. Only for scenes with colors.
     std::filesystem::path colors_from;
     /// The detectors, the scenes on which they are scored, and how they are run. Its tracks are those of the
     /// families.

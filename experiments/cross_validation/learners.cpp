@@ -198,11 +198,9 @@ RldParameters tuned_shape(const LearningOptions& options, const EvaluationOption
         .parameters;
 }
 
-/// With the best w_color; of equal ones the smallest. Slow scenes have no value, but do not spoil the others:
-/// dense ones are slow with any weight.
+/// With the best w_color; of equal ones the smallest.
 RldParameters with_color_weight(const RldParameters& parameters, const LearningOptions& options,
-                                EvaluationOptions solved) {
-    solved.max_timed_out = 1.0;
+                                const EvaluationOptions& solved) {
     const Evaluation evaluation(scenes_to_tune_on(options), solved);
     RldParameters best = parameters;
     double best_value = -1.0;
@@ -222,6 +220,7 @@ void learn_shape(const LearningOptions& options, const fs::path& folder) {
     if (fs::exists(file)) return;
     EvaluationOptions solved;
     solved.objective = TuningObjective::usable;
+    solved.max_timed_out = 1.0;  // Dense scenes are slow with any weight: they count as not usable, no more.
     solved.threads = options.scenes.threads;
     RldParameters parameters = options.without_colors.empty()
                                    ? tuned_shape(options, solved)

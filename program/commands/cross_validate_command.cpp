@@ -121,8 +121,8 @@ void add_cross_validate_command(CLI::App& program) {
     command
         .add_option("--colors-from", options->colors_from,
                     "FOLDER/NAME/..., learned without --color by another cross-validation: with --color, the "
-                    "methods go on from there and learn only what they make of colours. The shares of steps "
-                    "are those of this")
+                    "methods go on from there. front learns its set for colours, rld-shape its weight of "
+                    "colours, rld-learned all costs; the shares of steps are those of this")
         ->excludes("--folds");
     options->run.comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, options->run.comparison.run.limits.time_limit_ms);

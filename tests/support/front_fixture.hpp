@@ -3,6 +3,7 @@
 #include "conelane/scene.hpp"
 #include "graph_search/front/front_cost.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,17 @@ inline FrontWeights random_front_weights(std::uint64_t seed) {
         network->output_bias = any(random);
     }
     return weights;
+}
+
+/// A network with weights at random, without a bias of its output.
+inline FrontNetworkWeights random_front_network(std::size_t inputs, std::uint64_t seed) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::normal_distribution<float> any(0.0F, 0.3F);
+    FrontNetworkWeights network = FrontNetworkWeights::zero(inputs);
+    for (std::vector<float>* numbers :
+         {&network.hidden, &network.hidden_bias, &network.output, &network.linear})
+        for (float& number : *numbers) number = any(random);
+    return network;
 }
 
 /// A straight lane of width 3.6 m ahead of a car at the origin, a cone every 4 m from x = 2: left ids 0, 1,

@@ -332,7 +332,7 @@ TEST(LaneBeam, TheNextLevelHoldsTheBestOfAllSteps) {
                 EXPECT_EQ(search.beam.state(search.beam.level()[i]).last, best[i].last);
             }
         }
-        // The best lane may be a step that no level has room for.
+        // The answer is the best lane of all steps.
         Search again(search.scene, search.scores);
         const std::optional<std::size_t> found = again.best(width);
         ASSERT_TRUE(found);
