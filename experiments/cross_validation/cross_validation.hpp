@@ -17,8 +17,8 @@ struct CrossValidationOptions {
     /// Learned files FOLDER/FAMILY/... of another cross-validation with the same families; empty: learn.
     std::filesystem::path folds;
     /// FOLDER/FAMILY/... of another cross-validation with the same families, whose scenes had no colors:
-    /// `front` learns its set for colors, `rld-shape` its weight of colors, and `rld-learned` goes on with all
-    /// costs. Empty: everything is learned from the beginning. Only for scenes with colors.
+    /// `front` learns its set for colors, `rld-shape` its weight of colors, and `rld-learned` goes on with
+    /// all costs. Empty: everything is learned from the beginning. Only for scenes with colors.
     std::filesystem::path colors_from;
     /// The detectors, the scenes on which they are scored, and how they are run. Its tracks are those of the
     /// families.
