@@ -16,6 +16,9 @@ namespace {
 constexpr double kTrustedByRule_m = 10.0;
 /// Time that checking a found lane may still take after the limit.
 constexpr double kMinTime_ms = 0.5;
+/// Of the limit, what is left for checking, so that a search that takes all of its time loses no lane.
+constexpr double kCheckShare = 0.04;
+constexpr double kMaxCheck_ms = 2.0;
 
 /// No points if the lane is outside of what `drivable` accepts, such as one of more than 20 km. Nothing if
 /// the deadline passes.
@@ -58,7 +61,9 @@ class DrivableAnswers final : public LaneDetector {
   private:
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         const Deadline whole(limits.time_limit_ms);
-        LaneAnswer answer = search_by(*detector_, scene, limits);
+        DetectionLimits of_search = limits;
+        of_search.time_limit_ms -= std::min(kCheckShare * limits.time_limit_ms, kMaxCheck_ms);
+        LaneAnswer answer = search_by(*detector_, scene, of_search);
         if (answer.status != LaneStatus::found) return answer;
         const Deadline deadline(std::max(whole.remaining_ms(), kMinTime_ms));
         std::optional<DrivableLane> lane = drivable_or_none(answer, scene, deadline);

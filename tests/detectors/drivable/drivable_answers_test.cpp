@@ -28,6 +28,19 @@ class Says final : public LaneDetector {
     LaneAnswer answer_;
 };
 
+/// Finds nothing, and notes the time that it is given.
+class NotesItsLimit final : public LaneDetector {
+  public:
+    explicit NotesItsLimit(double& time_limit_ms) : time_limit_ms_(&time_limit_ms) {}
+
+  private:
+    LaneAnswer search(const Scene& /*scene*/, const DetectionLimits& limits) override {
+        *time_limit_ms_ = limits.time_limit_ms;
+        return {};
+    }
+    double* time_limit_ms_;
+};
+
 LaneAnswer found(const Lane& lane) {
     LaneAnswer answer;
     answer.status = LaneStatus::found;
@@ -81,6 +94,22 @@ TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapIfItCannotBeDriven
     EXPECT_EQ(answer.lane.left, (std::vector<ConeId>{0, 1, 2}));
     EXPECT_FALSE(drivable(answer, course.scene).points.empty());
     EXPECT_NEAR(answer.trusted_m.value_or(-1.0), 8.0, 0.05);
+}
+
+TEST(DrivableAnswers, TheSearchLeavesTimeForTheCheck) {
+    const auto given_ms = [](double time_limit_ms) {
+        double given = -1.0;
+        const Course course = tests::straight({0.0, 4.0}, {0.0, 4.0});
+        (void)answer_drivable_lanes(std::make_unique<NotesItsLimit>(given))
+            ->detect(course.scene, {.time_limit_ms = time_limit_ms});
+        return given;
+    };
+    // Merging doubled cones takes some of it before.
+    EXPECT_LE(given_ms(50.0), 48.0);
+    EXPECT_LE(given_ms(1000.0), 998.0);
+    EXPECT_LE(given_ms(10.0), 9.6);
+    EXPECT_GT(given_ms(1e9), 0.9e9);
+    EXPECT_EQ(given_ms(tests::kNoTimeLimit.time_limit_ms), tests::kNoTimeLimit.time_limit_ms);
 }
 
 TEST(DrivableAnswers, OtherAnswersStayUnchanged) {

@@ -1,6 +1,7 @@
 #include "graph_search/clc/lane_beam.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 
 #include <algorithm>
@@ -338,6 +339,28 @@ TEST(LaneBeam, TheNextLevelHoldsTheBestOfAllSteps) {
         ASSERT_TRUE(found);
         EXPECT_EQ(again.beam.state(*found).score, best_lane);
     }
+}
+
+/// Neighbourhoods come from a table of fewer places than there are steps: each step has its own.
+TEST(LaneBeam, MeasuresTheNeighbourhoodOfEachStepInAWideBeam) {
+    Search search(random_scene(3, 60), neighbourhood_scores());
+    search.start(400);
+    std::size_t steps = 0;
+    while (search.beam.advance(search.budget)) {
+        for (const std::size_t number : search.beam.level()) {
+            const LaneBeam::State& state = search.beam.state(number);
+            const Vertex tip = state.before[state.pushed];
+            const Point& facing = search.graph.position(state.last[opposite(state.pushed)]);
+            const Point& vertex = search.graph.position(state.last[state.pushed]);
+            const Neighbourhood cones = neighbourhood(search.graph, tip, search.graph.position(tip), facing,
+                                                      vertex, vertex, facing);
+            ASSERT_EQ(state.step[kBesideMeasure], cones.beside);
+            ASSERT_EQ(state.step[kCloseMeasure], cones.close);
+            ASSERT_EQ(state.step[kInsideMeasure], cones.inside);
+            ++steps;
+        }
+    }
+    EXPECT_GT(steps, 5000U);
 }
 
 /// More vertices than a state has bits.
