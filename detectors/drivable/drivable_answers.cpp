@@ -62,7 +62,7 @@ class DrivableAnswers final : public LaneDetector {
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         const Deadline whole(limits.time_limit_ms);
         DetectionLimits of_search = limits;
-        of_search.time_limit_ms -= std::min(kCheckShare * limits.time_limit_ms, kMaxCheck_ms);
+        of_search.time_limit_ms -= std::clamp(kCheckShare * limits.time_limit_ms, 0.0, kMaxCheck_ms);
         LaneAnswer answer = search_by(*detector_, scene, of_search);
         if (answer.status != LaneStatus::found) return answer;
         const Deadline deadline(std::max(whole.remaining_ms(), kMinTime_ms));

@@ -110,6 +110,7 @@ TEST(DrivableAnswers, TheSearchLeavesTimeForTheCheck) {
     EXPECT_LE(given_ms(10.0), 9.6);
     EXPECT_GT(given_ms(1e9), 0.9e9);
     EXPECT_EQ(given_ms(tests::kNoTimeLimit.time_limit_ms), tests::kNoTimeLimit.time_limit_ms);
+    EXPECT_EQ(given_ms(-tests::kNoTimeLimit.time_limit_ms), -tests::kNoTimeLimit.time_limit_ms);
 }
 
 TEST(DrivableAnswers, OtherAnswersStayUnchanged) {
