@@ -352,8 +352,8 @@ TEST(LaneBeam, MeasuresTheNeighbourhoodOfEachStepInAWideBeam) {
             const Vertex tip = state.before[state.pushed];
             const Point& facing = search.graph.position(state.last[opposite(state.pushed)]);
             const Point& vertex = search.graph.position(state.last[state.pushed]);
-            const Neighbourhood cones = neighbourhood(search.graph, tip, search.graph.position(tip), facing,
-                                                      vertex, vertex, facing);
+            const Neighbourhood cones =
+                neighbourhood(search.graph, tip, search.graph.position(tip), facing, vertex, vertex, facing);
             ASSERT_EQ(state.step[kBesideMeasure], cones.beside);
             ASSERT_EQ(state.step[kCloseMeasure], cones.close);
             ASSERT_EQ(state.step[kInsideMeasure], cones.inside);
