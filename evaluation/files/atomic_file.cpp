@@ -112,12 +112,13 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target), place_(target)
     if (target.filename().empty()) fail(target, EISDIR);
     if (fs::exists(status)) place_ = fs::canonical(target);
     {
+        // Opened before it may be cleared: opening a file that is gone would create it again.
         const auto held = hold_interruption();
         temporary_ = create_temporary(place_, target);
         clearing_.emplace([name = temporary_] { ::unlink(name.c_str()); });
+        if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), error);
+        stream_.open(temporary_, std::ios::binary | std::ios::trunc);
     }
-    if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), error);
-    stream_.open(temporary_, std::ios::binary | std::ios::trunc);
     if (!stream_) {
         const int reason = errno;
         fs::remove(temporary_, error);
