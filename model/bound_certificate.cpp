@@ -63,7 +63,7 @@ class Verification {
         std::size_t arc;  ///< the next one
         double cost;      ///< of the turn
     };
-    /// An edge that (27) allows, or that is allowed over a gap.
+    /// An edge that (27), or a gap, and the limits of nearest cones allow.
     struct AllowedEdge {
         std::size_t i;
         std::size_t j;
@@ -189,6 +189,18 @@ class Verification {
         return false;
     }
 
+    /// Whether one cone has the other one among its k nearest; k of 0 is no limit.
+    [[nodiscard]] bool joins_nearest(const Edge& edge, double k) const {
+        const auto nearer_to = [&](std::size_t end) {
+            std::size_t count = 0;
+            for (std::size_t cone = 0; cone < scene_.cones.size(); ++cone) {
+                if (cone != end && length_of({end, cone}) < length_of(edge) - kTieTolerance) ++count;
+            }
+            return static_cast<double>(count);
+        };
+        return k == 0.0 || nearer_to(edge.i) < k || nearer_to(edge.j) < k;
+    }
+
     [[nodiscard]] std::vector<AllowedEdge> allowed_edges() const {
         std::vector<AllowedEdge> edges;
         for (std::size_t i = 0; i < scene_.cones.size(); ++i) {
@@ -196,6 +208,7 @@ class Verification {
                 const bool is_long = exceeds_s_crit({i, j});
                 const double length = length_of({i, j});
                 if (length < kMinEdge || (is_long && !is_over_gap({i, j}))) continue;
+                if (!joins_nearest({i, j}, is_long ? p_.k_gap : p_.k_edge)) continue;
                 edges.push_back(
                     {i, j, position(j) - position(i), length, 0.5 * (position(i) + position(j)), is_long});
             }

@@ -275,6 +275,19 @@ class Checker {
         return true;
     }
 
+    /// Whether fewer than k cones are nearer to one end than the other end is; k of 0 is no limit.
+    [[nodiscard]] bool is_among_nearest(const Edge& edge, double k) const {
+        if (k == 0.0) return true;
+        const Real apart = length(position(edge.j) - position(edge.i));
+        for (const std::size_t end : {edge.i, edge.j}) {
+            std::size_t nearer = 0;
+            for (std::size_t cone = 0; cone < scene_.cones.size(); ++cone)
+                nearer += cone != end && length(position(cone) - position(end)) < apart - kTie ? 1 : 0;
+            if (static_cast<double>(nearer) < k) return true;
+        }
+        return false;
+    }
+
     /// An edge that may be part of a boundary, so it may face another edge.
     struct FacingEdge {
         std::size_t k;
@@ -344,6 +357,9 @@ class Checker {
                 gaps.emplace(std::min(edge.i, edge.j), std::max(edge.i, edge.j));
             }
             if (length(v) < kMinEdge) violated_for_good("edge " + name(edge) + " has no length");
+            const bool over_gap = gaps.contains({edge.i, edge.j});
+            if (!is_among_nearest(edge, over_gap ? p_.k_gap : p_.k_edge))
+                violated_for_good("nearest: at both cones of edge " + name(edge) + ", too many are nearer");
             const Real across = std::abs(wedge(v, heading_));
             const Real car_distance = std::max(length(along(from, to, 0.5L) - car_), 0.5L);
             sum += static_cast<Real>(p_.w_s) * spacing +

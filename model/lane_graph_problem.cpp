@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -129,6 +130,49 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
             !within(spacing_cost, p.s_crit) || length < kMinEdge_m};
 }
 
+/// By cone: the distance of its k-th nearest other cone; infinite if there is none within max_m, or k is 0.
+/// A cone j is among the k nearest of i if fewer than k cones are nearer to i: if within(D_ij, reach_i).
+std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m) {
+    const std::size_t n = scene.cones.size();
+    std::vector<double> reach_m(n, std::numeric_limits<double>::infinity());
+    if (!(k > 0.0)) return reach_m;
+    const auto rank = static_cast<std::size_t>(std::ceil(k));
+    const double longest_m = max_m + kMargin_m;
+    std::vector<double> distance_m;
+    for (std::size_t i = 0; i < n; ++i) {
+        distance_m.clear();
+        for (std::size_t j = 0; j < n; ++j) {
+            const double squared = (scene.cones[j].position - scene.cones[i].position).squaredNorm();
+            if (j != i && squared <= longest_m * longest_m) distance_m.push_back(std::sqrt(squared));
+        }
+        if (distance_m.size() < rank) continue;
+        const auto nth = distance_m.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+        std::ranges::nth_element(distance_m, nth);
+        reach_m[i] = *nth;
+    }
+    return reach_m;
+}
+
+double longest_edge_m(const RldParameters& p) {
+    return p.d_e + p.d_t * std::sqrt(std::sqrt(p.s_crit + kTieTolerance));
+}
+
+/// Excludes the edges that k_edge excludes. Precondition: all edges within s_crit are listed, and no gaps.
+void keep_nearest(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem, Limits& limits) {
+    const RldParameters& p = problem.parameters;
+    if (!(p.k_edge > 0.0) || limits.stop(problem, problem.cone_count * problem.cone_count)) return;
+    const std::vector<double> reach_m = reach_of_nearest(scene, p.k_edge, longest_edge_m(p));
+    const auto is_excluded = [&](const ProblemEdge& edge) {
+        const double length_m = (scene.cones[edge.j].position - scene.cones[edge.i].position).norm();
+        return !within(length_m, reach_m[edge.i]) && !within(length_m, reach_m[edge.j]);
+    };
+    if (extent == EdgeExtent::candidates) {
+        std::erase_if(problem.edges, is_excluded);
+        return;
+    }
+    for (ProblemEdge& edge : problem.edges) edge.high_cost = edge.high_cost || is_excluded(edge);
+}
+
 /// Whether three cones bend by at most theta_gap at the middle one.
 bool is_straight(const Scene& scene, std::size_t before, std::size_t middle, std::size_t after,
                  const RldParameters& p) {
@@ -152,14 +196,16 @@ bool is_clear(const Scene& scene, std::size_t i, std::size_t j, std::span<const 
     });
 }
 
-/// Allows edges over gaps: longer than s_crit allows, at most d_gap, no cone stands on them, and at one end
-/// or both a listed edge continues nearly straight. Precondition: all edges within s_crit are listed, and no
-/// gaps.
-void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, LaneGraphProblem& problem,
-               Limits& limits) {
+/// Edges over gaps: longer than s_crit allows, at most d_gap, among the k_gap nearest, no cone stands on them,
+/// and at one end or both an edge within s_crit continues nearly straight. Precondition: all edges within
+/// s_crit are listed, and no gaps.
+std::vector<ProblemEdge> find_gaps(const Scene& scene, const Point& heading, const LaneGraphProblem& problem,
+                                   Limits& limits) {
     const RldParameters& p = problem.parameters;
     const std::size_t n = problem.cone_count;
-    if (p.d_gap <= p.d_e) return;
+    std::vector<ProblemEdge> gaps;
+    if (p.d_gap <= p.d_e || limits.stop(problem, n * n)) return gaps;
+    const std::vector<double> reach_m = reach_of_nearest(scene, p.k_gap, p.d_gap);
     std::vector<std::vector<std::size_t>> next(n);
     for (const ProblemEdge& edge : problem.edges) {
         if (edge.high_cost) continue;
@@ -170,10 +216,9 @@ void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, Lane
         return std::ranges::any_of(next[to],
                                    [&](std::size_t on) { return is_straight(scene, from, to, on, p); });
     };
-    std::vector<ProblemEdge> gaps;
     std::vector<std::size_t> near_i;  // what stands on an edge is nearer than its other end
     for (std::size_t i = 0; i < n; ++i) {
-        if (limits.stop(problem, 10 * n)) return;
+        if (limits.stop(problem, 10 * n)) return gaps;
         near_i.clear();
         for (std::size_t cone = 0; p.d_clear > 0.0 && cone < n; ++cone) {
             const double distance = (scene.cones[cone].position - scene.cones[i].position).norm();
@@ -182,9 +227,10 @@ void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, Lane
         for (std::size_t j = i + 1; j < n; ++j) {
             const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
             if (!within(distance, p.d_gap) || distance <= p.d_e ||
-                within(fourth_power((distance - p.d_e) / p.d_t), p.s_crit))
+                within(fourth_power((distance - p.d_e) / p.d_t), p.s_crit) ||
+                (!within(distance, reach_m[i]) && !within(distance, reach_m[j])))
                 continue;
-            if (limits.stop(problem, near_i.size())) return;
+            if (limits.stop(problem, near_i.size())) return gaps;
             if (!is_clear(scene, i, j, near_i, p) || (!goes_on(i, j) && !goes_on(j, i))) continue;
             ProblemEdge edge = make_problem_edge(scene, heading, p, i, j, distance);
             edge.high_cost = false;
@@ -192,6 +238,10 @@ void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, Lane
             gaps.push_back(edge);
         }
     }
+    return gaps;
+}
+
+void add_gaps(std::span<const ProblemEdge> gaps, EdgeExtent extent, LaneGraphProblem& problem) {
     const auto cones = [](const ProblemEdge& edge) { return std::pair(edge.i, edge.j); };
     if (extent == EdgeExtent::all_pairs) {  // every pair is listed
         for (const ProblemEdge& gap : gaps)
@@ -235,7 +285,7 @@ void add_shape_costs(const Scene& scene, LaneGraphProblem& problem, Limits& limi
     const RldParameters& p = problem.parameters;
     if (p.w_v > 0.0 || p.learned_costs) {
         const auto stop = [&](std::size_t pairs) { return limits.stop(problem, 4 * pairs); };
-        const std::vector<double> facing = facing_costs(scene, problem.edges, p, stop);
+        const std::vector<double> facing = facing_costs(scene, problem.edges, problem.facers, p, stop);
         if (limits.struck()) return;
         for (std::size_t e = 0; e < facing.size(); ++e) problem.edges[e].facing_cost = facing[e];
     }
@@ -332,10 +382,7 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
     problem.edges.reserve(std::min(4 * n, kReservedEntries));
     problem.far_apart.reserve(std::min(n * n / 2, kReservedEntries));
     // Longer pairs are too long for (27) and (17). Most pairs are longer.
-    const double longest =
-        kMargin_m +
-        std::max(parameters.d_max,
-                 parameters.d_e + parameters.d_t * std::sqrt(std::sqrt(parameters.s_crit + kTieTolerance)));
+    const double longest = kMargin_m + std::max(parameters.d_max, longest_edge_m(parameters));
     for (std::size_t i = 0; i < n; ++i) {
         if (limits.stop(problem, 2 * (n - i))) return;
         const bool is_far = !problem.near[i];
@@ -409,7 +456,15 @@ LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& param
         problem.near[i] = within((scene.cones[i].position - scene.pose.position).norm(), parameters.d_near);
     }
     find_edges(scene, extent, problem, limits);
-    find_gaps(scene, scene.pose.heading(), extent, problem, limits);
+    const std::vector<ProblemEdge> gaps = find_gaps(scene, scene.pose.heading(), problem, limits);
+    if (limits.stop(problem)) return problem;
+    if (parameters.w_v > 0.0 || parameters.learned_costs) {
+        for (const ProblemEdge& edge : problem.edges) {
+            if (!edge.high_cost) problem.facers.push_back({edge.i, edge.j});
+        }
+    }
+    keep_nearest(scene, extent, problem, limits);
+    add_gaps(gaps, extent, problem);
     if (limits.stop(problem)) return problem;
     find_incident(problem);
     add_shape_costs(scene, problem, limits);

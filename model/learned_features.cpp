@@ -89,7 +89,7 @@ LearnedFeatures::LearnedFeatures(const Scene& scene, const LaneGraphProblem& pro
             if (k != i && squared <= longest_squared) around_edges_[i].push_back(k);
         }
     }
-    facing_ = facing_at_any_width(scene, problem.edges, stop);
+    facing_ = facing_at_any_width(scene, problem.edges, problem.facers, stop);
 }
 
 double LearnedFeatures::crowd(const Point& place, std::size_t without, std::size_t and_without) const {

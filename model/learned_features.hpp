@@ -19,7 +19,7 @@ inline constexpr std::size_t kFarEndFeatures = 6;
 
 /// The features of a problem's edges, turns and ends; formulation.md has the definition of each. All are
 /// continuous in the positions, so a checker with other arithmetic finds the same costs. Problem and scene
-/// must outlive it. Preconditions: edges, their facing costs and which cones are near are known; no
+/// must outlive it. Preconditions: edges, their facing costs, facers and which cones are near are known; no
 /// coordinate is farther than 1e5 m from the car.
 class LearnedFeatures {
   public:

@@ -14,6 +14,7 @@ constexpr double kMaxLength_m = 1000.0;
 /// With more than three missing cones, an edge carries no information.
 constexpr double kMaxGap_m = 20.0;
 constexpr double kMaxWeight = 1e6;
+constexpr double kMaxCount = 1e6;
 /// Smallest divisor of a difference [m] or [rad]. Below a millimetre, costs depend on rounding.
 constexpr double kMinThreshold = 1e-3;
 using P = RldParameters;
@@ -36,7 +37,7 @@ constexpr std::array<RldParameterField, 15> kFields{{
     {"t_crit", &P::t_crit, "1", 0.0, kMaxWeight, "largest angle cost"},
 }};
 
-constexpr std::array<RldParameterField, 11> kExtraFields{{
+constexpr std::array<RldParameterField, 13> kExtraFields{{
     {"w_color", &P::w_color, "1", 0.0, kMaxWeight, "weight of the colour cost"},
     {"w_u", &P::w_u, "1", 0.0, kMaxWeight, "weight of uneven spacing"},
     {"w_v", &P::w_v, "1", 0.0, kMaxWeight, "weight of the facing cost"},
@@ -49,6 +50,8 @@ constexpr std::array<RldParameterField, 11> kExtraFields{{
     {"theta_gap", &P::theta_gap, "rad", 0.0, std::numbers::pi, "largest angle at an edge over a gap"},
     {"d_clear", &P::d_clear, "m", 0.0, kMaxLength_m,
      "distance of an edge over a gap from the cones beside it"},
+    {"k_edge", &P::k_edge, "1", 0.0, kMaxCount, "an edge joins a cone with one of its so many nearest"},
+    {"k_gap", &P::k_gap, "1", 0.0, kMaxCount, "the same for an edge over a gap"},
 }};
 
 void require_in_range(const RldParameterField& field, const RldParameters& parameters) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -24,14 +23,14 @@ struct PlacedEdge {
     double strip = 0.0;  ///< of PlacedEdges
 };
 
-PlacedEdge placed(const Scene& scene, const ProblemEdge& edge, std::size_t number) {
-    const Point& from = scene.cones[edge.i].position;
-    const Point& to = scene.cones[edge.j].position;
+PlacedEdge placed(const Scene& scene, std::size_t i, std::size_t j, std::size_t number) {
+    const Point& from = scene.cones[i].position;
+    const Point& to = scene.cones[j].position;
     const double length = (to - from).norm();
     return {number, 0.5 * (from + to), length > 0.0 ? Point((to - from) / length) : Point(0.0, 0.0), length};
 }
 
-bool share_a_cone(const ProblemEdge& a, const ProblemEdge& b) {
+bool share_a_cone(const ProblemEdge& a, const Edge& b) {
     return a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j;
 }
 
@@ -71,20 +70,18 @@ class PlacedEdges {
 /// and longer_m of two edges; `along` and `across` belong to the way between their midpoints, seen from the
 /// first edge. It is at least 1 if the midpoints are farther apart than `reach_m`.
 template <typename CostOf>
-std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edges, double reach_m,
-                           const CostOf& cost_of, const std::function<bool(std::size_t)>& stop) {
+std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edges,
+                           std::span<const Edge> facers, double reach_m, const CostOf& cost_of, const std::function<bool(std::size_t)>& stop) {
     std::vector<PlacedEdge> places;
-    places.reserve(edges.size());
-    for (std::size_t e = 0; e < edges.size(); ++e) places.push_back(placed(scene, edges[e], e));
-    std::vector<PlacedEdge> may_face;
-    std::ranges::copy_if(places, std::back_inserter(may_face), [edges](const PlacedEdge& place) {
-        return !edges[place.number].high_cost && !edges[place.number].gap;
-    });
-    const PlacedEdges facers(std::move(may_face), reach_m);
+    places.reserve(facers.size());
+    for (std::size_t f = 0; f < facers.size(); ++f)
+        places.push_back(placed(scene, facers[f].i, facers[f].j, f));
+    const PlacedEdges placed_facers(std::move(places), reach_m);
     std::vector<double> costs(edges.size(), 1.0);
-    for (const PlacedEdge& place : places) {
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const PlacedEdge place = placed(scene, edges[e].i, edges[e].j, e);
         if (place.direction.isZero()) continue;
-        const auto lists = facers.around(place.middle);
+        const auto lists = placed_facers.around(place.middle);
         if (stop && stop(lists[0].size() + lists[1].size() + lists[2].size())) return costs;
         double least = 1.0;
         for (const std::span<const PlacedEdge> list : lists) {
@@ -94,10 +91,10 @@ std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edge
                 const double along_squared = std::max(0.0, way.squaredNorm() - square(across));
                 const double cost = cost_of(along_squared, across, cross(place.direction, facer.direction),
                                             place.length_m - facer.length_m);
-                if (cost < least && !share_a_cone(edges[place.number], edges[facer.number])) least = cost;
+                if (cost < least && !share_a_cone(edges[e], facers[facer.number])) least = cost;
             }
         }
-        costs[place.number] = least;
+        costs[e] = least;
     }
     return costs;
 }
@@ -105,15 +102,16 @@ std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edge
 }  // namespace
 
 std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
-                                 const RldParameters& p, const std::function<bool(std::size_t)>& stop) {
+                                 std::span<const Edge> facers, const RldParameters& p, const std::function<bool(std::size_t)>& stop) {
     const auto cost = [&p](double along_squared, double across, double sine, double longer_m) {
         const double unlike = square(sine / p.theta_v) + square(longer_m / p.d_l);
         return (along_squared + square(std::abs(across) - p.d_w)) / square(p.d_v) + unlike;
     };
-    return facing(scene, edges, p.d_w + p.d_v, cost, stop);
+    return facing(scene, edges, facers, p.d_w + p.d_v, cost, stop);
 }
 
 std::vector<double> facing_at_any_width(const Scene& scene, std::span<const ProblemEdge> edges,
+                                        std::span<const Edge> facers,
                                         const std::function<bool(std::size_t)>& stop) {
     constexpr double kReach_m = 7.7;  // beyond it the cost is above 1
     const auto cost = [](double along_squared, double across, double sine, double /*longer_m*/) {
@@ -125,7 +123,7 @@ std::vector<double> facing_at_any_width(const Scene& scene, std::span<const Prob
         const double off = std::max(0.0, width - kWidest_m) + std::max(0.0, kNarrowest_m - width);
         return along_squared / square(kAlong_m) + square(off) + square(sine / kSine);
     };
-    return facing(scene, edges, kReach_m, cost, stop);
+    return facing(scene, edges, facers, kReach_m, cost, stop);
 }
 
 double unevenness(double before_m, double after_m, const RldParameters& parameters) {

@@ -137,15 +137,17 @@ RldParameters rld_learning_parameters() {
           &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n}) {
         parameters.*weight = 0.0;
     }
-    parameters.t_crit = 9.0;
-    parameters.d_min = 2.0;
+    parameters.t_crit = 12.0;
+    parameters.d_min = 1.7;
     parameters.d_h = 8.0;
     parameters.theta_heading = 1.4;
     parameters.d_near = 8.0;
     parameters.d_max = 7.0;
-    parameters.d_gap = 11.5;
-    parameters.theta_gap = 1.1;
-    parameters.d_clear = 0.5;
+    parameters.d_gap = 12.5;
+    parameters.theta_gap = 1.3;
+    parameters.d_clear = 0.2;
+    parameters.k_edge = 8.0;
+    parameters.k_gap = 16.0;
     return parameters;
 }
 

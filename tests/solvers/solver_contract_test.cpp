@@ -279,8 +279,8 @@ TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
     EXPECT_GT(changed, 0) << "the extras decided nothing";
 }
 
-/// Learned costs and edges over gaps are numbers of the problem like all others: every solver minimises the
-/// same costs, and the checker computes them too.
+/// Learned costs, edges over gaps and limits of nearest cones are numbers of the problem like all others:
+/// every solver minimises the same costs, and the checker computes them too.
 TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
     int changed = 0;
     int over_gaps = 0;
@@ -291,6 +291,8 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
         parameters.theta_gap = 0.6;
+        parameters.k_edge = static_cast<double>(seed % 5);
+        parameters.k_gap = static_cast<double>(seed % 7);
         const RldReport plain = solve(scene, parameters);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
         const LaneGraphProblem problem = make_problem(scene, parameters);

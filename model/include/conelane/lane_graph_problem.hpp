@@ -37,7 +37,7 @@ struct ProblemEdge {
     /// ends at i and at j.
     double cost;
     bool along_heading;         ///< h_ij of (9)
-    bool high_cost;             ///< s_ij > s_crit (27), and no gap: never chosen
+    bool high_cost;             ///< s_ij > s_crit (27), and no gap, or k_edge excludes it: never chosen
     bool gap = false;           ///< s_ij > s_crit, and allowed over a gap by d_gap
     double learned_cost = 0.0;  ///< of the edge alone; 0 if it is high_cost
 };
@@ -56,7 +56,7 @@ struct ProblemTurn {
 
 /// Which edges a problem lists.
 enum class EdgeExtent {
-    candidates,  ///< those that (27) allows
+    candidates,  ///< those that (27) and k_edge allow
     all_pairs,   ///< all n (n - 1) / 2, as the printed model has them
 };
 
@@ -69,6 +69,9 @@ struct LaneGraphProblem {
     std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
     std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< (6)-(8): edges too close, first < second
     std::vector<bool> near;                                      ///< r_i of (11)
+    /// All edges within s_crit, chosen or not by k_edge: those that may face another one, see facing_costs.
+    /// Empty if no cost needs them.
+    std::vector<Edge> facers;
     /// z_i, see near_end_fit; 0 for a far cone. m_i = A_i - 2 (turns at i) is 1 if a path ends, else 0. So
     /// - w_n sum_i z_i m_i is a cost of edges and turns, and solvers need no term for it.
     std::vector<double> near_end_fit;

@@ -81,6 +81,8 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
         RldParameters parameters;
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
+        parameters.k_edge = static_cast<double>(seed % 4);
+        parameters.k_gap = static_cast<double>(seed % 6);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
         if (!certificate.lane_graph) continue;

@@ -355,6 +355,8 @@ TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
         parameters.theta_gap = 0.5;
+        parameters.k_edge = static_cast<double>(seed % 6);
+        parameters.k_gap = static_cast<double>(seed % 9);
         parameters.w_color = 0.3;
         parameters.use_confidence = true;
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
