@@ -196,9 +196,9 @@ bool is_clear(const Scene& scene, std::size_t i, std::size_t j, std::span<const 
     });
 }
 
-/// Edges over gaps: longer than s_crit allows, at most d_gap, among the k_gap nearest, no cone stands on them,
-/// and at one end or both an edge within s_crit continues nearly straight. Precondition: all edges within
-/// s_crit are listed, and no gaps.
+/// Edges over gaps: longer than s_crit allows, at most d_gap, among the k_gap nearest, no cone stands on
+/// them, and at one end or both an edge within s_crit continues nearly straight. Precondition: all edges
+/// within s_crit are listed, and no gaps.
 std::vector<ProblemEdge> find_gaps(const Scene& scene, const Point& heading, const LaneGraphProblem& problem,
                                    Limits& limits) {
     const RldParameters& p = problem.parameters;

@@ -71,7 +71,8 @@ class PlacedEdges {
 /// first edge. It is at least 1 if the midpoints are farther apart than `reach_m`.
 template <typename CostOf>
 std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edges,
-                           std::span<const Edge> facers, double reach_m, const CostOf& cost_of, const std::function<bool(std::size_t)>& stop) {
+                           std::span<const Edge> facers, double reach_m, const CostOf& cost_of,
+                           const std::function<bool(std::size_t)>& stop) {
     std::vector<PlacedEdge> places;
     places.reserve(facers.size());
     for (std::size_t f = 0; f < facers.size(); ++f)
@@ -102,7 +103,8 @@ std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edge
 }  // namespace
 
 std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
-                                 std::span<const Edge> facers, const RldParameters& p, const std::function<bool(std::size_t)>& stop) {
+                                 std::span<const Edge> facers, const RldParameters& p,
+                                 const std::function<bool(std::size_t)>& stop) {
     const auto cost = [&p](double along_squared, double across, double sine, double longer_m) {
         const double unlike = square(sine / p.theta_v) + square(longer_m / p.d_l);
         return (along_squared + square(std::abs(across) - p.d_w)) / square(p.d_v) + unlike;

@@ -18,11 +18,11 @@ namespace conelane {
 [[nodiscard]] double unevenness(double before_m, double after_m, const RldParameters& parameters);
 
 /// v_ij in [0, 1], an entry for each edge: the cost of the edge that faces it best. Over all `facers`, the
-/// edges within s_crit, that share no cone with {i, j}, it is the least (l^2 + (b - d_w)^2) / d_v^2 + (sin(angle) /
-/// theta_v)^2 + ((D - D_ij) / d_l)^2, at most 1. l and b are the components, along {i, j} and across it, of
-/// the vector between the two midpoints; the angle is between the edges, and D is the length of the other
-/// edge. An edge of zero length has 1. `stop` gets the number of pairs of edges before they are examined; the
-/// costs are invalid once it returns true.
+/// edges within s_crit, that share no cone with {i, j}, it is the least (l^2 + (b - d_w)^2) / d_v^2 +
+/// (sin(angle) / theta_v)^2 + ((D - D_ij) / d_l)^2, at most 1. l and b are the components, along {i, j} and
+/// across it, of the vector between the two midpoints; the angle is between the edges, and D is the length of
+/// the other edge. An edge of zero length has 1. `stop` gets the number of pairs of edges before they are
+/// examined; the costs are invalid once it returns true.
 [[nodiscard]] std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
                                                std::span<const Edge> facers, const RldParameters& parameters,
                                                const std::function<bool(std::size_t)>& stop = {});
