@@ -57,6 +57,7 @@ void PairBeam::run(const Limits& limits, Incumbent& incumbent, SearchClock& cloc
     take_cheapest_first_steps(clock);
     while (labels_.size() > next_ && !clock.struck()) {
         steps_.clear();
+        ++place_level_;
         level_ = std::exchange(next_, labels_.size());
         std::swap(lost_, lost_next_);
         lost_next_.clear();
@@ -66,25 +67,53 @@ void PairBeam::run(const Limits& limits, Incumbent& incumbent, SearchClock& cloc
                 best = static_cast<int>(l);
                 best_cost = label.cost;
             }
-            const std::size_t steps = steps_.size();
-            add_steps(static_cast<int>(l), lost(l - level_));
-            if (clock.out_of_time(kWorkPerStep * (steps_.size() - steps))) break;
+            const std::size_t steps = add_steps(static_cast<int>(l), lost(l - level_));
+            if (clock.out_of_time(kWorkPerStep * steps)) break;
         }
         take_cheapest_steps(clock);
     }
     if (best >= 0) offer(best, incumbent);
 }
 
-void PairBeam::add_steps(int l, const std::uint64_t* lost) {
+std::size_t PairBeam::add_steps(int l, const std::uint64_t* lost) {
     const Label& label = labels_[to_index(l)];
+    std::size_t steps = 0;
     for (int leg = 0; leg < 2; ++leg) {
         if (label.length[to_index(leg)] >= label.length[to_index(1 - leg)] + kMaxLead) continue;
         for (const ArcGraph::Succession& next : graph_->successions(label.last[to_index(leg)])) {
             if (!allows(lost, next.arc)) continue;
             Step step{l, leg, label.last, label.cost + next.cost + graph_->cost(next.arc / 2)};
             step.last[to_index(leg)] = next.arc;
-            steps_.push_back(step);
+            add_step(step);
+            ++steps;
         }
+    }
+    return steps;
+}
+
+std::size_t PairBeam::place_of(const std::array<int, 2>& last) const {
+    constexpr std::uint64_t kSpread = 0x9e3779b97f4a7c15;
+    const std::uint64_t key = to_index(last[0]) * to_index(graph_->arc_count()) + to_index(last[1]);
+    std::size_t place = (key * kSpread >> 32U) & (places_.size() - 1);
+    while (places_[place].level == place_level_ && steps_[places_[place].step].last != last)
+        place = (place + 1) & (places_.size() - 1);
+    return place;
+}
+
+void PairBeam::grow_places() {
+    places_.assign(std::max<std::size_t>(1024, 2 * places_.size()), {0, 0});
+    for (std::size_t step = 0; step < steps_.size(); ++step)
+        places_[place_of(steps_[step].last)] = {place_level_, step};
+}
+
+void PairBeam::add_step(const Step& step) {
+    if (2 * (steps_.size() + 1) > places_.size()) grow_places();
+    Place& place = places_[place_of(step.last)];
+    if (place.level != place_level_) {
+        place = {place_level_, steps_.size()};
+        steps_.push_back(step);
+    } else if (kDearer(steps_[place.step], step)) {
+        steps_[place.step] = step;
     }
 }
 
@@ -103,7 +132,7 @@ void PairBeam::take_cheapest_first_steps(SearchClock& clock) {
 
 void PairBeam::take_cheapest_steps(SearchClock& clock) {
     begin_level();
-    // A heap, as few of many steps are taken.
+    // A heap, because not all steps are looked at.
     std::ranges::make_heap(steps_, kDearer);
     for (auto end = steps_.end(); end != steps_.begin() && !is_full();) {
         const auto left = static_cast<std::size_t>(end - steps_.begin());
@@ -115,28 +144,19 @@ void PairBeam::take_cheapest_steps(SearchClock& clock) {
 
 void PairBeam::begin_level() {
     at_cone_.assign(to_index(graph_->cone_count()), 0);
-    newest_at_arc_.assign(to_index(graph_->arc_count()), -1);
 }
 
 void PairBeam::take(const Step& step) {
     int& at_first = at_cone_[to_index(graph_->head(step.last[0]))];
     int& at_second = at_cone_[to_index(graph_->head(step.last[1]))];
-    if (at_first + at_second >= limits_.max_at_cone || is_taken(step.last)) return;
+    if (at_first + at_second >= limits_.max_at_cone) return;
     ++at_first;
     ++at_second;
     add_label(step);
 }
 
-bool PairBeam::is_taken(const std::array<int, 2>& last) const {
-    int l = newest_at_arc_[to_index(last[0])];
-    while (l >= 0 && labels_[to_index(l)].last[1] != last[1]) l = labels_[to_index(l)].older_at_arc;
-    return l >= 0;
-}
-
 void PairBeam::add_label(const Step& step) {
-    int& newest = newest_at_arc_[to_index(step.last[0])];
-    Label label{step.label, std::exchange(newest, static_cast<int>(labels_.size())), step.last, {1, 1}, 0,
-                step.cost};
+    Label label{step.label, step.last, {1, 1}, 0, step.cost};
     lost_next_.resize(lost_next_.size() + words_, 0);
     std::uint64_t* const row = lost_next_.data() + (lost_next_.size() - words_);
     const auto take_arc = [&](int arc) {

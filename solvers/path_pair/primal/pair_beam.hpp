@@ -32,7 +32,6 @@ class PairBeam {
   private:
     struct Label {
         int before;                 ///< the label that it continues, -1 for the first of a chain
-        int older_at_arc;           ///< the label taken before it with the same arc last[0], or -1
         std::array<int, 2> last;    ///< arcs
         std::array<int, 2> length;  ///< arcs of each leg
         int along_heading;          ///< edges, at most 2
@@ -49,13 +48,17 @@ class PairBeam {
         return system_->kinds[0].start[to_index(graph_->tail(arc))] != 0;
     }
     [[nodiscard]] std::uint64_t* lost(std::size_t number) { return lost_.data() + number * words_; }
-    void add_steps(int label, const std::uint64_t* lost);
+    /// Adds the ways on from a label to steps_, and returns how many there are. Of those to the same pair of
+    /// last arcs the cheapest is kept.
+    std::size_t add_steps(int label, const std::uint64_t* lost);
+    void add_step(const Step& step);
+    void grow_places();
+    [[nodiscard]] std::size_t place_of(const std::array<int, 2>& last) const;
     void take_cheapest_first_steps(SearchClock& clock);
     void take_cheapest_steps(SearchClock& clock);
     void begin_level();
     [[nodiscard]] bool is_full() const { return labels_.size() - next_ >= limits_.width; }
     void take(const Step& step);
-    [[nodiscard]] bool is_taken(const std::array<int, 2>& last) const;
     void add_label(const Step& step);
     [[nodiscard]] bool is_lane(const Label& label) const;
     [[nodiscard]] bool allows(const std::uint64_t* lost, int arc) const;
@@ -75,7 +78,13 @@ class PairBeam {
     std::vector<Step> first_steps_;       ///< a heap, and behind it what was taken off it, the last one first
     std::size_t first_steps_heaped_ = 0;  ///< size of the heap
     std::vector<int> at_cone_;            ///< legs of the new labels that end there
-    std::vector<int> newest_at_arc_;      ///< by last[0]: the new label that was taken last, or -1
+    /// Where steps_ has the step to a pair of last arcs: a table with open addressing, of a power of two.
+    struct Place {
+        std::size_t level;  ///< of the step; the place is free if it is not the present one
+        std::size_t step;
+    };
+    std::vector<Place> places_;
+    std::size_t place_level_ = 0;  ///< counts levels over all beams
     std::vector<std::uint64_t>
         lost_;  ///< by label from level_ on: edges that are excluded, cones that are taken
     std::vector<std::uint64_t> lost_next_;  ///< by label from next_ on
