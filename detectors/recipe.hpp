@@ -24,6 +24,7 @@ struct RldRecipe {
     ConeSet cones;
     bool shape_costs = false;             ///< adds the costs of a lane's shape if the parameters have none
     std::string_view parameter_set = {};  ///< of rld_parameter_set, in place of the defaults
+    std::span<const double> other_d_near_m = {};  ///< see RldDetectorOptions
 };
 
 /// `front`, whose weights may be replaced.

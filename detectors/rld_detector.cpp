@@ -40,12 +40,12 @@ class RldDetector : public LaneDetector {
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);
         const ConeSet& cones = options_.cones;
-        if (!cones.nearest) return solve(scene, limits.time_limit_ms);
-        LaneAnswer answer = solve(cones.seen(scene), limits.time_limit_ms);
+        if (!cones.nearest) return solve_by_any_d_near(scene, deadline);
+        LaneAnswer answer = solve_by_any_d_near(cones.seen(scene), deadline);
         if (!cones.has_context() || answer.status != LaneStatus::found) return answer;
         Lane part = cut_to_nearest(answer.lane, scene, *cones.nearest, options_.parameters.d_max);
         if (part.left.empty() || part.right.empty()) {
-            return solve(nearest_ahead(scene, *cones.nearest), deadline.remaining_ms());
+            return solve_by_any_d_near(nearest_ahead(scene, *cones.nearest), deadline);
         }
         answer.uncut = UncutLane{std::move(answer.lane), answer.optimality};
         answer.optimality.reset();
@@ -53,11 +53,27 @@ class RldDetector : public LaneDetector {
         return answer;
     }
 
-    LaneAnswer solve(const Scene& seen, double time_limit_ms) {
+    LaneAnswer solve_by_any_d_near(const Scene& seen, const Deadline& deadline) {
+        LaneAnswer answer = solve(seen, options_.parameters, deadline.remaining_ms());
+        for (const double d_near_m : options_.other_d_near_m) {
+            if (answer.status != LaneStatus::none || deadline.passed()) break;
+            RldParameters other = options_.parameters;
+            other.d_near = d_near_m;
+            LaneAnswer retried = solve(seen, other, deadline.remaining_ms());
+            if (retried.status != LaneStatus::found) continue;
+            retried.optimality.reset();
+            retried.message =
+                "by another d_near, because no lane graph is feasible with that of the parameters";
+            return retried;
+        }
+        return answer;
+    }
+
+    LaneAnswer solve(const Scene& seen, const RldParameters& parameters, double time_limit_ms) {
         std::optional<LaneGraph> start;
         if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, seen);
         const RldReport report =
-            solve_valid_scene(*solver_, seen, options_.parameters, {time_limit_ms, options_.absolute_gap},
+            solve_valid_scene(*solver_, seen, parameters, {time_limit_ms, options_.absolute_gap},
                               start ? &*start : nullptr)
                 .report;
         if (options_.warm_start && report.lane_graph) previous_ = Solution{seen, *report.lane_graph};

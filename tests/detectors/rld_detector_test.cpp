@@ -11,6 +11,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -84,6 +86,35 @@ TEST(RldDetector, AnswersNoLaneWhereTheCutLeavesASideEmpty) {
     const LaneAnswer answer = detect(scene, 1, 20);  // cone 101 alone
     EXPECT_EQ(answer.status, LaneStatus::none);
     EXPECT_EQ(answer.lane, Lane{});
+}
+
+/// The first two cones on the left were missed: no cone there is within d_near, so no lane graph is feasible.
+TEST(RldDetector, TriesOtherValuesOfDNearWhereNoLaneGraphIsFeasible) {
+    Scene late = straight();
+    std::erase_if(late.cones, [](const Cone& cone) { return cone.id == 1 || cone.id == 2; });
+    const auto by = [](const Scene& scene, std::vector<double> other_d_near_m) {
+        return make_rld_detector(find_rld_solver("path-pair")->make(Formulation::tight),
+                                 {.parameters = {}, .other_d_near_m = std::move(other_d_near_m)})
+            ->detect(scene, tests::kNoTimeLimit);
+    };
+    EXPECT_EQ(by(late, {}).status, LaneStatus::none);
+    EXPECT_EQ(by(late, {4.0, 5.0}).status, LaneStatus::none);
+    const LaneAnswer answer = by(late, {5.0, 8.0});
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(3, 4, 5, 6, 7, 8));
+    EXPECT_THAT(answer.lane.right, ElementsAre(101, 102, 103, 104, 105, 106, 107, 108));
+    EXPECT_FALSE(answer.optimality) << "it is optimal for another program";
+    EXPECT_THAT(answer.message, HasSubstr("another d_near"));
+
+    // All cones of a short view are near, so there is no far end.
+    Scene early = straight();
+    std::erase_if(early.cones, [](const Cone& cone) { return cone.id % 100 > 2; });
+    EXPECT_EQ(by(early, {}).status, LaneStatus::none);
+    EXPECT_THAT(by(early, {4.0}).lane.left, ElementsAre(1, 2));
+
+    const LaneAnswer whole = by(straight(), {8.0});
+    EXPECT_TRUE(whole.optimality) << "the first program has a lane";
+    EXPECT_EQ(whole.message, "");
 }
 
 TEST(RldDetector, ScenesThatAreNotValidAreRefusedByItAndBySolveScene) {

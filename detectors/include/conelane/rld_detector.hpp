@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace conelane {
 
@@ -30,6 +31,10 @@ struct RldDetectorOptions {
     ConeSet cones;               ///< all cones by default
     double absolute_gap = 1e-9;  ///< see SolveLimits
     bool warm_start = false;     ///< start from the previous scene's lane graph, its cones found again by id
+    /// Values of d_near to try, in this order, where no lane graph is feasible [m]: a first cone may be
+    /// beyond d_near, and all cones of a short view may be within. An answer by one of them makes no
+    /// statement about its optimality, and its message says so.
+    std::vector<double> other_d_near_m = {};
 };
 
 /// A detector of an RLD solver: the lane graph of least cost is the lane. The time limit includes making
