@@ -94,7 +94,7 @@ TEST(RldDetector, TriesOtherValuesOfDNearWhereNoLaneGraphIsFeasible) {
     std::erase_if(late.cones, [](const Cone& cone) { return cone.id == 1 || cone.id == 2; });
     const auto by = [](const Scene& scene, std::vector<double> other_d_near_m) {
         return make_rld_detector(find_rld_solver("path-pair")->make(Formulation::tight),
-                                 {.parameters = {}, .other_d_near_m = std::move(other_d_near_m)})
+                                 {.parameters = {}, .cones = {}, .other_d_near_m = std::move(other_d_near_m)})
             ->detect(scene, tests::kNoTimeLimit);
     };
     EXPECT_EQ(by(late, {}).status, LaneStatus::none);
