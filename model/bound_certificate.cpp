@@ -76,7 +76,9 @@ class Verification {
     void violated(std::string what) { verdict_.violations.push_back(std::move(what)); }
     [[nodiscard]] const Point& position(std::size_t cone) const { return scene_.cones[cone].position; }
     [[nodiscard]] bool near(std::size_t cone) const {
-        return (position(cone) - scene_.pose.position).norm() <= p_.d_near + kTieTolerance;
+        const Point way = position(cone) - scene_.pose.position;
+        if (p_.d_side > 0.0 && std::abs(cross(heading_, way)) > p_.d_side + kTieTolerance) return false;
+        return way.norm() <= p_.d_near + kTieTolerance;
     }
     [[nodiscard]] double angle_cost(std::size_t i, std::size_t middle, std::size_t k) const {
         return fourth((interior_angle(position(i), position(middle), position(k)) - p_.theta_e) / p_.theta_t);

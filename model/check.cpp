@@ -108,7 +108,10 @@ class Checker {
         return "{" + name(edge.i) + ", " + name(edge.j) + "}";
     }
     [[nodiscard]] bool is_near(std::size_t cone) const {
-        return length(position(cone) - car_) <= static_cast<Real>(p_.d_near) + kTie;
+        const Vector way = position(cone) - car_;
+        const bool aside =
+            p_.d_side > 0 && std::abs(wedge(heading_, way)) > static_cast<Real>(p_.d_side) + kTie;
+        return !aside && length(way) <= static_cast<Real>(p_.d_near) + kTie;
     }
     /// For a violation that more edges may repair.
     void violated(std::string what) { report_.violations.push_back(std::move(what)); }

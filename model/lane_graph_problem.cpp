@@ -453,7 +453,10 @@ LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& param
     problem.parameters = parameters;
     problem.near.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
-        problem.near[i] = within((scene.cones[i].position - scene.pose.position).norm(), parameters.d_near);
+        const Point& cone = scene.cones[i].position;
+        const double aside_m = std::abs(scene.pose.left_m(cone));
+        problem.near[i] = within((cone - scene.pose.position).norm(), parameters.d_near) &&
+                          (parameters.d_side == 0.0 || within(aside_m, parameters.d_side));
     }
     find_edges(scene, extent, problem, limits);
     const std::vector<ProblemEdge> gaps = find_gaps(scene, scene.pose.heading(), problem, limits);

@@ -37,7 +37,7 @@ constexpr std::array<RldParameterField, 15> kFields{{
     {"t_crit", &P::t_crit, "1", 0.0, kMaxWeight, "largest angle cost"},
 }};
 
-constexpr std::array<RldParameterField, 13> kExtraFields{{
+constexpr std::array<RldParameterField, 14> kExtraFields{{
     {"w_color", &P::w_color, "1", 0.0, kMaxWeight, "weight of the colour cost"},
     {"w_u", &P::w_u, "1", 0.0, kMaxWeight, "weight of uneven spacing"},
     {"w_v", &P::w_v, "1", 0.0, kMaxWeight, "weight of the facing cost"},
@@ -50,6 +50,7 @@ constexpr std::array<RldParameterField, 13> kExtraFields{{
     {"theta_gap", &P::theta_gap, "rad", 0.0, std::numbers::pi, "largest angle at an edge over a gap"},
     {"d_clear", &P::d_clear, "m", 0.0, kMaxLength_m,
      "distance of an edge over a gap from the cones beside it"},
+    {"d_side", &P::d_side, "m", 0.0, kMaxLength_m, "distance of the near endpoints from the car's axis"},
     {"k_edge", &P::k_edge, "1", 0.0, kMaxCount, "an edge joins a cone with one of its so many nearest"},
     {"k_gap", &P::k_gap, "1", 0.0, kMaxCount, "the same for an edge over a gap"},
 }};

@@ -218,7 +218,8 @@ class Builder {
         const Real tie("1e-9");
         for (std::size_t cone = 0; cone < count; ++cone) {
             const Vector place = from_car(cone);
-            result_.near.push_back(place.length() <= Real(p_.d_near) + tie);
+            const bool aside = p_.d_side > 0.0 && across(place) > Real(p_.d_side) + tie;
+            result_.near.push_back(!aside && place.length() <= Real(p_.d_near) + tie);
             const Real off = (across(place) - Real(p_.d_w) / 2) / Real(p_.d_t);
             const Real fit = std::max(Real(0), Real(1 - square(off)));
             const bool is_near = result_.near.back();

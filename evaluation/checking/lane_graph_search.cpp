@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -65,13 +67,20 @@ class LaneGraphSearch {
         return (scene_.cones[a].position - scene_.cones[b].position).norm();
     }
 
+    /// By how much a place is farther from the car's axis than d_side; no limit is infinitely far.
+    [[nodiscard]] double beyond_side_m(const Point& place) const {
+        if (parameters_.d_side == 0.0) return -std::numeric_limits<double>::infinity();
+        return std::abs(scene_.pose.left_m(place)) - parameters_.d_side;
+    }
+
     /// False if the time ended.
     bool find_edges() {
         const std::size_t cones = scene_.cones.size();
         for (const Cone& cone : scene_.cones) {
             const double distance = (cone.position - scene_.pose.position).norm();
-            near_.push_back(distance <= parameters_.d_near + kSlack_m);
-            far_.push_back(distance >= parameters_.d_near - kSlack_m);
+            const double beyond_m = std::max(distance - parameters_.d_near, beyond_side_m(cone.position));
+            near_.push_back(beyond_m <= kSlack_m);
+            far_.push_back(beyond_m >= -kSlack_m);
         }
         edges_at_.resize(cones);
         for (std::size_t i = 0; i < cones; ++i) {

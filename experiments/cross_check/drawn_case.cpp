@@ -231,7 +231,7 @@ void draw_parameters(RldParameters& parameters, Draw& draw) {
     parameters.pairing = draw.chance(0.5) ? Pairing::paper : Pairing::near_far;
 }
 
-/// Edges over gaps and to the nearest cones, and learned costs of any sign.
+/// Edges over gaps and to the nearest cones, near endpoints by the car's axis, and learned costs of any sign.
 void draw_learned_costs(RldParameters& parameters, Draw& draw) {
     constexpr std::size_t kUnits = 4;
     if (draw.chance(0.5)) {
@@ -239,6 +239,7 @@ void draw_learned_costs(RldParameters& parameters, Draw& draw) {
         parameters.theta_gap = rounded(draw.real(0.1, 1.0));
         if (draw.chance(0.5)) parameters.d_clear = rounded(draw.real(0.1, 1.0));
     }
+    if (draw.chance(0.3)) parameters.d_side = rounded(draw.real(1.0, 6.0));
     if (draw.chance(0.5)) parameters.k_edge = draw.integer(2, 8);
     if (draw.chance(0.5)) parameters.k_gap = draw.integer(2, 16);
     LearnedCosts costs = LearnedCosts::zero(draw.chance(0.5) ? kUnits : 0);

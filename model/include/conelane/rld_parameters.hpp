@@ -55,6 +55,8 @@ struct RldParameters {
     double theta_gap = 0.4;  ///< largest angle from straight on at the ends of such an edge [rad]
     double d_clear = 0.0;    ///< no cone between the ends of such an edge is nearer to it [m]
 
+    double d_side = 0.0;  ///< a near endpoint is nearer to the car's axis than this [m]; off at 0
+
     // An edge joins cones that are among the nearest of each other, seen from one of them; off at 0.
     double k_edge = 0.0;  ///< for one end of an edge, fewer cones than this are nearer than its other end
     double k_gap = 0.0;   ///< the same for an edge over a gap
