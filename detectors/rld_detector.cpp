@@ -62,6 +62,7 @@ class RldDetector : public LaneDetector {
             LaneAnswer retried = solve(seen, other, deadline.remaining_ms());
             if (retried.status != LaneStatus::found) continue;
             retried.optimality.reset();
+            retried.other_d_near_m = d_near_m;
             retried.message =
                 "by another d_near, because no lane graph is feasible with that of the parameters";
             return retried;

@@ -14,8 +14,12 @@ namespace conelane::experiments {
 namespace {
 
 /// The fault of a lane that was found, in words; empty if there is none.
-std::string objection(const LaneRecord& record, const Scene& seen, const RldParameters& parameters) {
+std::string objection(const LaneRecord& record, const Scene& seen, RldParameters parameters) {
     const LaneAnswer& answer = record.answer;
+    if (answer.other_d_near_m) {
+        if (answer.optimality) return "the lane is optimal for another d_near than that of the parameters";
+        parameters.d_near = *answer.other_d_near_m;
+    }
     const Lane& lane = answer.uncut ? answer.uncut->lane : answer.lane;
     const std::optional<LaneGraph> graph = lane_graph_of(lane, seen);
     if (!graph) return "the lane has a cone that the method was not given, or one twice in a row";

@@ -141,7 +141,8 @@ RldParameters rld_learning_parameters() {
     parameters.d_min = 1.7;
     parameters.d_h = 8.0;
     parameters.theta_heading = 1.4;
-    parameters.d_near = 8.0;
+    parameters.d_near = 9.0;
+    parameters.d_side = 4.5;
     parameters.d_max = 7.0;
     parameters.d_gap = 12.5;
     parameters.theta_gap = 1.3;

@@ -104,6 +104,7 @@ TEST(RldDetector, TriesOtherValuesOfDNearWhereNoLaneGraphIsFeasible) {
     EXPECT_THAT(answer.lane.left, ElementsAre(3, 4, 5, 6, 7, 8));
     EXPECT_THAT(answer.lane.right, ElementsAre(101, 102, 103, 104, 105, 106, 107, 108));
     EXPECT_FALSE(answer.optimality) << "it is optimal for another program";
+    EXPECT_EQ(answer.other_d_near_m, 8.0);
     EXPECT_THAT(answer.message, HasSubstr("another d_near"));
 
     // All cones of a short view are near, so there is no far end.

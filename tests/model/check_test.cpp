@@ -69,6 +69,8 @@ TEST(Check, FourEndpointsOfWhichTwoAreNear) {
     EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 0 near")));
     parameters.d_near = 8.0;
     EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 4 near")));
+    parameters.d_side = 1.0;  // all cones are 1.75 m from the car's axis
+    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 0 near")));
 }
 
 TEST(Check, FarEndsMayBeExactlyDMaxApart) {

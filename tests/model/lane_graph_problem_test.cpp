@@ -90,6 +90,20 @@ TEST(LaneGraphProblem, AValueOnItsLimitIsWithinIt) {
     EXPECT_THAT(smaller.near, ElementsAre(true, false, false, true, false, false));
 }
 
+/// The car looks along +y: cones to its left have a smaller x.
+TEST(LaneGraphProblem, NearConesAreByTheCarsAxis) {
+    Scene scene;
+    scene.pose.yaw_rad = std::numbers::pi / 2;
+    for (const Point& position : {Point(-1.5, 2.0), Point(1.5, 2.0), Point(-4.4, 3.0), Point(4.6, 3.0),
+                                  Point(-4.4, -1.0), Point(0.0, 9.0)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    RldParameters parameters;
+    parameters.d_near = 8.0;
+    EXPECT_THAT(make_problem(scene, parameters).near, ElementsAre(true, true, true, true, true, false));
+    parameters.d_side = 4.5;
+    EXPECT_THAT(make_problem(scene, parameters).near, ElementsAre(true, true, true, false, true, false));
+}
+
 TEST(LaneGraphProblem, AnEdgeWithoutLengthIsNeverAllowed) {
     Scene scene = six_cone_lane();
     scene.cones.push_back({6, scene.cones[0].position});

@@ -293,6 +293,7 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
         parameters.theta_gap = 0.6;
         parameters.k_edge = static_cast<double>(seed % 5);
         parameters.k_gap = static_cast<double>(seed % 7);
+        parameters.d_side = seed % 3 == 0 ? 2.5 : 0.0;
         const RldReport plain = solve(scene, parameters);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
         const LaneGraphProblem problem = make_problem(scene, parameters);

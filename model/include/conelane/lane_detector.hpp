@@ -77,6 +77,8 @@ struct LaneAnswer {
     std::optional<double> trusted_m;
     std::optional<Optimality> optimality;  ///< of `lane` itself; absent if it was cut
     std::optional<UncutLane> uncut;        ///< if `lane` was cut; not stored in files
+    /// Of RLD: the d_near by which the lane is feasible, if not that of the parameters; not stored in files.
+    std::optional<double> other_d_near_m;
     std::optional<Enumeration> enumeration;
     std::vector<MergedCone> merged;  ///< by `cone`; empty if no cone is doubled; not stored in files
 };

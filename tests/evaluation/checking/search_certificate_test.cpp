@@ -83,6 +83,7 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
         parameters.d_clear = 0.5;
         parameters.k_edge = static_cast<double>(seed % 4);
         parameters.k_gap = static_cast<double>(seed % 6);
+        parameters.d_side = seed % 4 == 1 ? 2.5 : 0.0;
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
         if (!certificate.lane_graph) continue;

@@ -83,6 +83,19 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
     expect_rejected(unseen, scene);
 }
 
+TEST(CheckAnswer, ChecksALaneByTheDNearThatItNames) {
+    const AnnotatedScene scene = straight_scene();
+    LaneRecord record = answer_on(scene);
+    record.answer.other_d_near_m = RldParameters{}.d_near;
+    expect_rejected(record, scene);  // optimal for another program
+    record.answer.optimality.reset();
+    LaneRecord same = record;
+    check_answer(same, scene.scene, {.d_near = 0.5});
+    EXPECT_TRUE(same.checked) << same.answer.message;
+    record.answer.other_d_near_m = 0.5;  // no cone is so near
+    expect_rejected(record, scene);
+}
+
 TEST(CheckAnswer, ChecksTheUncutLaneOfALaneWithContext) {
     const AnnotatedScene scene = straight_scene();
     const KnownDetector& detector = find_detector("rld-context");

@@ -357,6 +357,7 @@ TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
         parameters.theta_gap = 0.5;
         parameters.k_edge = static_cast<double>(seed % 6);
         parameters.k_gap = static_cast<double>(seed % 9);
+        parameters.d_side = seed % 3 == 0 ? 2.5 : 0.0;
         parameters.w_color = 0.3;
         parameters.use_confidence = true;
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
