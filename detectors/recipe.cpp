@@ -23,8 +23,7 @@ namespace {
 constexpr std::size_t kRldConeSet = 12;
 /// More cones do not make lanes more accurate.
 constexpr std::size_t kRldContext = 24;
-/// Of `rld-learned`: for the far ends of a short view, then for first cones that were missed. In 31 scenes in
-/// which 8 m allowed no lane, 5 m found 11 usable lanes, and 13 m 11 more.
+/// Of `rld-learned`: for the far ends of a short view, then for first cones that were missed.
 constexpr std::array kOtherNear_m{5.0, 13.0};
 
 std::unique_ptr<RldSolver> path_pair() {

@@ -3,6 +3,7 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 
@@ -17,12 +18,7 @@
 namespace conelane {
 namespace {
 
-Scene scene_of(const std::vector<Point>& positions) {
-    Scene scene;
-    for (const Point& position : positions)
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-    return scene;
-}
+using tests::cones_at;
 
 /// The listed edge, if it may be chosen. Both extents and the checker have to agree on that.
 std::optional<ProblemEdge> allowed(const Scene& scene, const RldParameters& parameters, std::size_t i,
@@ -42,7 +38,7 @@ std::optional<ProblemEdge> allowed(const Scene& scene, const RldParameters& para
 /// Cones at 0, 1, 2.5 and 4.5 m of a line. Seen from the first cone, the last one is the third nearest; seen
 /// from the last cone, the first one is the third nearest, too.
 TEST(NearestCones, AreCountedFromEitherEnd) {
-    const Scene line = scene_of({{0.0, 0.0}, {1.0, 0.0}, {2.5, 0.0}, {4.5, 0.0}});
+    const Scene line = cones_at({{0.0, 0.0}, {1.0, 0.0}, {2.5, 0.0}, {4.5, 0.0}});
     RldParameters parameters;
     parameters.s_crit = 20.0;
     EXPECT_TRUE(allowed(line, parameters, 0, 3)) << "0 is no limit";
@@ -61,14 +57,14 @@ TEST(NearestCones, AreCountedFromEitherEnd) {
 
 /// Cones at the same distance have the same rank.
 TEST(NearestCones, AtTheSameDistanceAreAllAmongTheNearest) {
-    const Scene star = scene_of({{0.0, 0.0}, {3.2, 0.0}, {0.0, 3.2}, {-3.2, 0.0}, {0.0, -3.2}});
+    const Scene star = cones_at({{0.0, 0.0}, {3.2, 0.0}, {0.0, 3.2}, {-3.2, 0.0}, {0.0, -3.2}});
     RldParameters parameters;
     parameters.k_edge = 1.0;
     for (std::size_t ray = 1; ray < star.cones.size(); ++ray) EXPECT_TRUE(allowed(star, parameters, 0, ray));
 }
 
 TEST(NearestCones, HaveALimitOfTheirOwnOverGaps) {
-    const Scene row = scene_of({{-3.2, 0.0}, {0.0, 0.0}, {6.4, 0.0}, {9.6, 0.0}});
+    const Scene row = cones_at({{-3.2, 0.0}, {0.0, 0.0}, {6.4, 0.0}, {9.6, 0.0}});
     RldParameters parameters;
     parameters.d_gap = 7.0;
     parameters.k_edge = 1.0;

@@ -9,6 +9,7 @@
 #include "model/learned_features.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 
@@ -26,12 +27,7 @@
 namespace conelane {
 namespace {
 
-Scene scene_of(const std::vector<Point>& positions) {
-    Scene scene;
-    for (const Point& position : positions)
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-    return scene;
-}
+using tests::cones_at;
 
 std::size_t place_of(LearnedPart part, std::string_view name) {
     const auto features = learned_features(part);
@@ -56,7 +52,7 @@ const ProblemEdge& edge_of(const LaneGraphProblem& problem, std::size_t i, std::
 /// view, it ends earlier.
 TEST(LearnedCosts, DecideWhichLaneIsBest) {
     const Scene scene =
-        scene_of({{1, 1.75}, {4.2, 1.75}, {7.4, 1.75}, {1, -1.75}, {4.2, -1.75}, {7.4, -1.75}});
+        cones_at({{1, 1.75}, {4.2, 1.75}, {7.4, 1.75}, {1, -1.75}, {4.2, -1.75}, {7.4, -1.75}});
     const LaneGraph whole{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
     const LaneGraphProblem plain = make_problem(scene, {});
     EXPECT_EQ(make_exhaustive_solver()->solve(plain, {}).lane_graph, whole);
@@ -87,7 +83,7 @@ TEST(LearnedCosts, DecideWhichLaneIsBest) {
 
 TEST(LearnedCosts, MeasureWhatTheirNamesSay) {
     // Boundaries 3.6 m apart; cone 4 stands 0.6 m off the middle of the edge {0, 1}, inside the lane.
-    const Scene scene = scene_of({{2, 1.8}, {6, 1.8}, {2, -1.8}, {6, -1.8}, {4, 1.2}});
+    const Scene scene = cones_at({{2, 1.8}, {6, 1.8}, {2, -1.8}, {6, -1.8}, {4, 1.2}});
     RldParameters parameters;
     parameters.learned_costs = std::make_shared<const LearnedCosts>(LearnedCosts::zero());
     const LaneGraphProblem problem = make_problem(scene, parameters);
@@ -114,7 +110,7 @@ TEST(LearnedCosts, MeasureWhatTheirNamesSay) {
     const auto far = features.far_end(1);
     EXPECT_NEAR(far[place_of(LearnedPart::far_end, "in_view")], 0.0, 1e-12);
     // A turn over the top of a triangle of 2 m by 2 m with a cone at its centre.
-    const Scene roof = scene_of({{0, 0}, {2, 2}, {4, 0}, {2, 0.9}});
+    const Scene roof = cones_at({{0, 0}, {2, 2}, {4, 0}, {2, 0.9}});
     RldParameters any_turn = parameters;
     any_turn.t_crit = 1e6;
     any_turn.d_e = 2.8;
@@ -226,7 +222,7 @@ TEST(LearnedCosts, StraightOnIsStraightOnForTheCheckerToo) {
     int turns = 0;
     for (const Point& step : {Point(3, 0), Point(-3, 0), Point(0, 3), Point(0, -3)}) {
         for (const Point& from : {Point(1, 1.5), Point(-1, -1.5)}) {
-            Scene scene = scene_of({from, from + step, from + 2.0 * step});
+            Scene scene = cones_at({from, from + step, from + 2.0 * step});
             for (int rotation = 0; rotation < 3; ++rotation) {
                 std::ranges::rotate(scene.cones, scene.cones.begin() + 1);
                 const LaneGraphProblem problem = make_problem(scene, parameters);
@@ -260,7 +256,7 @@ TEST(Gaps, GoStraightOnAtAnEnd) {
         EXPECT_EQ(check(scene, parameters, {{{i, j}}}).is_final, !has);
         return has;
     };
-    const Scene straight = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}});
+    const Scene straight = cones_at({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}});
     RldParameters parameters;
     EXPECT_FALSE(has_gap(straight, parameters, 1, 2)) << "off by default";
     parameters.d_gap = 6.5;
@@ -268,17 +264,17 @@ TEST(Gaps, GoStraightOnAtAnEnd) {
     parameters.d_gap = 6.3;
     EXPECT_FALSE(has_gap(straight, parameters, 1, 2));
     parameters.d_gap = 9.0;
-    const Scene bent = scene_of({{2, -0.5}, {4.2, 1.5}, {10.6, 1.5}, {13.0, 3.5}});
+    const Scene bent = cones_at({{2, -0.5}, {4.2, 1.5}, {10.6, 1.5}, {13.0, 3.5}});
     EXPECT_FALSE(has_gap(bent, parameters, 1, 2));
     parameters.theta_gap = 0.8;
     EXPECT_TRUE(has_gap(bent, parameters, 1, 2));
-    EXPECT_TRUE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}}), parameters, 0, 1))
+    EXPECT_TRUE(has_gap(cones_at({{4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}}), parameters, 0, 1))
         << "the first edge in view";
-    EXPECT_FALSE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}}), parameters, 0, 1)) << "nothing around it";
+    EXPECT_FALSE(has_gap(cones_at({{4.2, 1.5}, {10.6, 1.5}}), parameters, 0, 1)) << "nothing around it";
     // A cone that stands on it forbids it; one beside it, or near its end, does not.
     parameters.d_clear = 0.5;
     const auto with_cone = [](double x, double y) {
-        return scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {x, y}});
+        return cones_at({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {x, y}});
     };
     EXPECT_FALSE(has_gap(with_cone(7.0, 1.9), parameters, 1, 2));
     EXPECT_TRUE(has_gap(with_cone(7.0, 2.1), parameters, 1, 2));
@@ -290,7 +286,7 @@ TEST(Gaps, GoStraightOnAtAnEnd) {
     parameters.d_clear = 0.0;
     // A turn at its end may not exceed theta_gap, even if t_crit allows more.
     parameters.theta_gap = 0.4;
-    const Scene forked = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {13.0, 3.5}});
+    const Scene forked = cones_at({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {13.0, 3.5}});
     const LaneGraphProblem problem = make_problem(forked, parameters);
     int turns = 0;
     for (const ProblemTurn& turn : problem.turns) {

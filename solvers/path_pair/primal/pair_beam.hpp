@@ -53,6 +53,7 @@ class PairBeam {
     std::size_t add_steps(int label, const std::uint64_t* lost);
     void add_step(const Step& step);
     void grow_places();
+    /// The place of the step to these last arcs, or the free one where it belongs.
     [[nodiscard]] std::size_t place_of(const std::array<int, 2>& last) const;
     void take_cheapest_first_steps(SearchClock& clock);
     void take_cheapest_steps(SearchClock& clock);
