@@ -56,16 +56,15 @@ class RldDetector : public LaneDetector {
     LaneAnswer solve_by_any_d_near(const Scene& seen, const Deadline& deadline) {
         LaneAnswer answer = solve(seen, options_.parameters, deadline.remaining_ms());
         for (const double d_near_m : options_.other_d_near_m) {
-            if (answer.status != LaneStatus::none || deadline.passed()) break;
+            if (answer.status != LaneStatus::none) break;
             RldParameters other = options_.parameters;
             other.d_near = d_near_m;
-            LaneAnswer retried = solve(seen, other, deadline.remaining_ms());
-            if (retried.status != LaneStatus::found) continue;
-            retried.optimality.reset();
-            retried.other_d_near_m = d_near_m;
-            retried.message =
+            answer = solve(seen, other, deadline.remaining_ms());
+            if (answer.status != LaneStatus::found) continue;
+            answer.optimality.reset();
+            answer.other_d_near_m = d_near_m;
+            answer.message =
                 "by another d_near, because no lane graph is feasible with that of the parameters";
-            return retried;
         }
         return answer;
     }

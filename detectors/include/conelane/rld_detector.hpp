@@ -33,7 +33,7 @@ struct RldDetectorOptions {
     bool warm_start = false;     ///< start from the previous scene's lane graph, its cones found again by id
     /// Values of d_near to try, in this order, where no lane graph is feasible [m]: a first cone may be
     /// beyond d_near, and all cones of a short view may be within. An answer by one of them makes no
-    /// statement about its optimality, and its message says so.
+    /// statement about its optimality, and its message says so. A limit that ends a try ends the search.
     std::vector<double> other_d_near_m = {};
 };
 
