@@ -7,6 +7,7 @@
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/tracks/generated_tracks.hpp"
 #include "model/geometry.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/recorded_tracks.hpp"
@@ -25,11 +26,7 @@
 namespace conelane::experiments {
 namespace {
 
-Scene scene_of(const std::vector<Point>& cones) {
-    Scene scene;
-    for (const Point& cone : cones) scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), cone});
-    return scene;
-}
+using tests::cones_at;
 
 LaneAnswer front(const Scene& scene) {
     return make_detector("front")->detect(scene, tests::kNoTimeLimit);
@@ -82,7 +79,7 @@ TEST(FrontBoundary, IsAnsweredOnTheSideOnWhichItPassesTheCar) {
         for (const double turn : {1.0, -1.0}) {
             for (const double radius_m : {8.0, 11.0, 15.0, 40.0, 1e4}) {
                 SCOPED_TRACE(testing::Message() << "side " << side << " turn " << turn << " r " << radius_m);
-                expect_boundary(scene_of(arc(radius_m, turn, side)), side);
+                expect_boundary(cones_at(arc(radius_m, turn, side)), side);
             }
         }
     }
@@ -94,14 +91,14 @@ TEST(FrontBoundary, TheOuterBoundaryOfABendMayBeginAcrossTheHeading) {
     for (const double turn : {1.0, -1.0}) {
         const std::vector<Point> outer = arc(12.0, turn, turn > 0.0 ? kRight : kLeft, 9.0);
         ASSERT_GT(turn * outer.front().y(), 0.5);
-        expect_boundary(scene_of(outer), turn > 0.0 ? kRight : kLeft);
+        expect_boundary(cones_at(outer), turn > 0.0 ? kRight : kLeft);
     }
 }
 
 TEST(FrontBoundary, BridgesAMissedConeFromTheThirdOn) {
     std::vector<Point> cones;
     for (const double x : {1.0, 5.0, 9.0, 17.0, 21.0, 25.0}) cones.emplace_back(x, -1.8);
-    expect_boundary(scene_of(cones), kRight);
+    expect_boundary(cones_at(cones), kRight);
 }
 
 /// A segment of a lane may be longer if cones are few, because the other boundary shows the way.
@@ -110,7 +107,7 @@ TEST(FrontBoundary, EndsBeforeALongGap) {
         std::vector<Point> cones;
         for (const double x : {1.0, 5.0, 9.0, 9.0 + gap_m, 13.0 + gap_m, 17.0 + gap_m})
             cones.emplace_back(x, -1.8);
-        return search(scene_of(cones)).value().cones;
+        return search(cones_at(cones)).value().cones;
     };
     EXPECT_EQ(found(11.4), (std::vector<ConeId>{0, 1, 2, 3, 4, 5}));
     EXPECT_EQ(found(11.6), (std::vector<ConeId>{0, 1, 2}));
@@ -120,9 +117,9 @@ TEST(FrontBoundary, EndsBeforeALongGap) {
 TEST(FrontBoundary, BridgesNothingOverACone) {
     std::vector<Point> cones;
     for (const double x : {1.0, 5.4, 9.8, 17.8, 22.2, 26.6}) cones.emplace_back(x, -1.8);
-    expect_boundary(scene_of(cones), kRight);
+    expect_boundary(cones_at(cones), kRight);
     cones.emplace_back(11.3, -1.8);
-    EXPECT_EQ(search(scene_of(cones)).value().cones, (std::vector<ConeId>{0, 1, 2}));
+    EXPECT_EQ(search(cones_at(cones)).value().cones, (std::vector<ConeId>{0, 1, 2}));
 }
 
 /// Along y = 1.8, once round a circle to the left, and down across the beginning, between cones 2 and 3.
@@ -133,7 +130,7 @@ TEST(FrontBoundary, EndsBeforeItCrossesItself) {
         cones.emplace_back(13.0 + 4.7 * std::sin(0.66 * i), 6.5 - 4.7 * std::cos(0.66 * i));
     const auto last = static_cast<ConeId>(cones.size()) - 1;
     for (const double y : {3.3, 0.2, -2.8, -5.8, -8.8}) cones.emplace_back(8.4, y);
-    const std::vector<ConeId> boundary = search(scene_of(cones)).value().cones;
+    const std::vector<ConeId> boundary = search(cones_at(cones)).value().cones;
     EXPECT_EQ(boundary.back(), last + 1);
 }
 
@@ -142,7 +139,7 @@ TEST(FrontBoundary, LeavesOutConesBesideIt) {
     for (int i = 0; i < 7; ++i) cones.emplace_back(1.0 + 4.0 * i, 1.8);
     cones.emplace_back(13.5, 12.0);
     cones.emplace_back(20.0, 15.0);
-    const std::optional<Boundary> boundary = boundary_of(front(scene_of(cones)));
+    const std::optional<Boundary> boundary = boundary_of(front(cones_at(cones)));
     ASSERT_TRUE(boundary);
     EXPECT_EQ(boundary->side, kLeft);
     EXPECT_EQ(boundary->cones, (std::vector<ConeId>{0, 1, 2, 3, 4, 5, 6}));
@@ -157,14 +154,14 @@ TEST(FrontBoundary, OnlySmoothChainsBesideTheCarAreBoundaries) {
              {{1, 5.8}, {5, 5.8}, {9, 5.8}, {13, 5.8}},  // farther away than any lane is wide
              {{14, 1.8}, {18, 1.8}, {22, 1.8}},          // far ahead
              {{1, 1.8}, {8, 1.8}, {15, 1.8}}}) {         // too far apart
-        const LaneAnswer answer = front(scene_of(cones));
+        const LaneAnswer answer = front(cones_at(cones));
         EXPECT_EQ(answer.status, LaneStatus::none) << cones[0].transpose() << ", " << cones[1].transpose();
         EXPECT_EQ(answer.lane, Lane{});
     }
 }
 
 TEST(FrontBoundary, NeitherOrderNorIdsOfTheConesMatter) {
-    Scene scene = scene_of(arc(9.0, 1.0, kRight));
+    Scene scene = cones_at(arc(9.0, 1.0, kRight));
     std::vector<ConeId> cones = search(scene).value().cones;
     std::ranges::reverse(scene.cones);
     EXPECT_EQ(search(scene).value().cones, cones);
@@ -175,7 +172,7 @@ TEST(FrontBoundary, NeitherOrderNorIdsOfTheConesMatter) {
 }
 
 TEST(FrontBoundary, AMirroredSceneHasTheMirroredBoundary) {
-    Scene scene = scene_of(arc(9.0, -1.0, kLeft));
+    Scene scene = cones_at(arc(9.0, -1.0, kLeft));
     const std::vector<ConeId> cones = search(scene).value().cones;
     for (Cone& cone : scene.cones) cone.position.y() *= -1.0;
     EXPECT_EQ(search(scene).value().side, kRight);
@@ -198,7 +195,7 @@ TEST(FrontBoundary, IsRarelyMadeOfNoise) {
                 const Point point(x, left_m(random));
                 if (point.norm() < 30.0) points.push_back(point);
             }
-            const LaneAnswer answer = detector->detect(scene_of(points), tests::kNoTimeLimit);
+            const LaneAnswer answer = detector->detect(cones_at(points), tests::kNoTimeLimit);
             if (!answer.lane.left.empty() && !answer.lane.right.empty()) continue;
             ++without_lane;
             if (answer.status == LaneStatus::found) ++boundaries;
@@ -218,7 +215,7 @@ TEST(FrontBoundary, KeepsTheDeadlineInACrowd) {
         const double x = ahead_m(random);
         points.emplace_back(x, left_m(random));
     }
-    const Scene scene = scene_of(points);
+    const Scene scene = cones_at(points);
     const auto detector = make_detector("front");
     for (const double limit_ms : {5.0, 50.0}) {
         LaneAnswer answer;

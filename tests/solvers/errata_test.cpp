@@ -6,6 +6,7 @@
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/cbc_solver.hpp"
 #include "solvers/registry.hpp"
+#include "tests/support/cones_at.hpp"
 
 #include <cmath>
 #include <string_view>
@@ -18,14 +19,7 @@ namespace conelane {
 namespace {
 
 using testing::HasSubstr;
-
-Scene scene_of(const std::vector<Point>& positions) {
-    Scene scene;
-    for (const Point& position : positions) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-    }
-    return scene;
-}
+using tests::cones_at;
 
 LaneGraphProblem paper_problem(const Scene& scene, const RldParameters& parameters = {}) {
     return make_problem(scene, parameters, EdgeExtent::all_pairs);
@@ -42,7 +36,7 @@ RldReport solve_corrected(const LaneGraphProblem& problem) {
 
 /// Two straight boundaries, the right one half a spacing behind: no edge exactly faces another.
 const Scene kStaggered =
-    scene_of({{2.6, 1.5}, {5.8, 1.5}, {9.0, 1.5}, {1.0, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
+    cones_at({{2.6, 1.5}, {5.8, 1.5}, {9.0, 1.5}, {1.0, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
 
 /// (7) printed: a_ij + a_kl <= 1 if MinDist > d_min. Meant: MinDist < d_min.
 TEST(Errata, Equation7AsPrintedForbidsFacingEdges) {
@@ -72,7 +66,7 @@ TEST(Errata, Equation7AsPrintedForbidsFacingEdges) {
 
 /// (9) printed: h^T a > 2. Meant: >= 2, as in (33). The least lane has one near edge on each side.
 TEST(Errata, Equation9AsPrintedNeedsAThirdEdge) {
-    const Scene scene = scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}});
+    const Scene scene = cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}});
     const LaneGraphProblem problem = paper_problem(scene);
     EXPECT_EQ(solve_corrected(problem).status, SolveStatus::optimal);
     const LaneGraphModel model(problem, Formulation::paper);
@@ -89,7 +83,7 @@ TEST(Errata, Equation9AsPrintedNeedsAThirdEdge) {
 
 /// (26) printed: the heading cost has weight w_n, which the objective (29) does not know. Meant: w_p.
 TEST(Errata, Equation26HasTheWeightOfTheObjective) {
-    const Scene scene = scene_of({{4, 1.5}, {7.2, 2.1}, {4, -1.5}, {7.2, -0.9}});
+    const Scene scene = cones_at({{4, 1.5}, {7.2, 2.1}, {4, -1.5}, {7.2, -0.9}});
     const LaneGraph graph{{{0, 1}, {2, 3}}};
     RldParameters none;
     none.w_p = 0.0;
@@ -123,7 +117,7 @@ BinaryProgram with_upper_bound(const BinaryProgram& program, std::string_view fa
 /// (27) printed: s^c o a <= 1, which binds no binary a. Meant: = 0.
 TEST(Errata, Equation27AsPrintedBindsNothing) {
     // The left boundary's only continuation, past the near cone, is longer than s_crit allows.
-    const Scene scene = scene_of({{4, 1.5}, {9.6, 1.5}, {4, -1.5}, {7.2, -1.5}});
+    const Scene scene = cones_at({{4, 1.5}, {9.6, 1.5}, {4, -1.5}, {7.2, -1.5}});
     RldParameters parameters;
     parameters.w_s = 0.0;
     const LaneGraphProblem problem = paper_problem(scene, parameters);
@@ -138,7 +132,7 @@ TEST(Errata, Equation27AsPrintedBindsNothing) {
 /// (28) printed: t^c o f <= 1, which binds no binary f. Meant: = 0.
 TEST(Errata, Equation28AsPrintedBindsNothing) {
     // The left boundary bends by 80 degrees at its middle cone.
-    const Scene scene = scene_of({{1, 1.5}, {4.2, 1.5}, {4.76, 4.65}, {1, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
+    const Scene scene = cones_at({{1, 1.5}, {4.2, 1.5}, {4.76, 4.65}, {1, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
     RldParameters parameters;
     parameters.w_t = 0.0;
     parameters.w_p = 0.0;
@@ -157,7 +151,7 @@ TEST(Errata, Equation28AsPrintedBindsNothing) {
 /// (12) printed: m_i - r_i + u_i = 1, said to be 0 at near endpoints. A near inner cone has m_i = 0, r_i = 1,
 /// so u_i = 2. Meant: m_i (1 - r_i) + u_i = 1.
 TEST(Errata, Equation12AsPrintedForbidsNearInnerCones) {
-    const Scene scene = scene_of({{1, 1.5}, {4.2, 1.5}, {7.4, 1.5}, {1, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
+    const Scene scene = cones_at({{1, 1.5}, {4.2, 1.5}, {7.4, 1.5}, {1, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
     const LaneGraphProblem problem = paper_problem(scene);
     const RldReport corrected = solve_corrected(problem);
     ASSERT_EQ(corrected.status, SolveStatus::optimal);
@@ -212,7 +206,7 @@ TEST(Errata, Rows1To4AllowCyclesAndDroppingThemIsNotOptimal) {
     // boundary can go straight on but not up; the upper side is too far from the right boundary for an end.
     const double along = 3.2 * std::cos(0.2);
     const double up = 3.2 * std::sin(0.2);
-    const Scene scene = scene_of({{4.0, 1.5},
+    const Scene scene = cones_at({{4.0, 1.5},
                                   {7.2, 1.5},
                                   {10.4, 1.5},
                                   {10.4 + along, 1.5 + up},

@@ -6,6 +6,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 
 #include <cmath>
@@ -19,13 +20,7 @@
 namespace conelane {
 namespace {
 
-Scene scene_of(const std::vector<Point>& cones) {
-    Scene scene;
-    for (const Point& cone : cones) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size() + 1), cone});
-    }
-    return scene;
-}
+using tests::cones_at;
 
 /// Only the facing cost, for a lane 4 m wide; edges cost nothing else.
 RldParameters facing_parameters() {
@@ -60,44 +55,44 @@ TEST(Unevenness, IsTheSquaredDifferenceInUnitsOfTheSpacingThreshold) {
 }
 
 TEST(FacingCost, IsZeroIfTheLaneHasTheExpectedWidth) {
-    const Scene lane = scene_of({{2, 2}, {5, 2}, {2, -2}, {5, -2}});
+    const Scene lane = cones_at({{2, 2}, {5, 2}, {2, -2}, {5, -2}});
     EXPECT_NEAR(facing_cost(lane, facing_parameters(), 0, 1), 0.0, 1e-12);
     EXPECT_NEAR(facing_cost(lane, facing_parameters(), 2, 3), 0.0, 1e-12);
 }
 
 TEST(FacingCost, GrowsWithWidthOffsetAngleAndLength) {
     // 1 m too wide: (1 / 2)^2.
-    EXPECT_NEAR(facing_cost(scene_of({{2, 2}, {5, 2}, {2, -3}, {5, -3}}), facing_parameters(), 0, 1), 0.25,
+    EXPECT_NEAR(facing_cost(cones_at({{2, 2}, {5, 2}, {2, -3}, {5, -3}}), facing_parameters(), 0, 1), 0.25,
                 1e-12);
     // 1 m farther along.
-    EXPECT_NEAR(facing_cost(scene_of({{2, 2}, {5, 2}, {3, -2}, {6, -2}}), facing_parameters(), 0, 1), 0.25,
+    EXPECT_NEAR(facing_cost(cones_at({{2, 2}, {5, 2}, {3, -2}, {6, -2}}), facing_parameters(), 0, 1), 0.25,
                 1e-12);
     // Turned about its middle by an angle with sine 0.3: (0.3 / 0.5)^2.
     const double ahead = 1.5 * std::sqrt(1.0 - 0.09);
-    const Scene turned = scene_of({{2, 2}, {5, 2}, {3.5 - ahead, -2.45}, {3.5 + ahead, -1.55}});
+    const Scene turned = cones_at({{2, 2}, {5, 2}, {3.5 - ahead, -2.45}, {3.5 + ahead, -1.55}});
     EXPECT_NEAR(facing_cost(turned, facing_parameters(), 0, 1), 0.36, 1e-12);
     // 1 m longer: (1 / 2)^2, for the longer one as for the shorter.
-    const Scene unlike = scene_of({{2, 2}, {5, 2}, {1.5, -2}, {5.5, -2}});
+    const Scene unlike = cones_at({{2, 2}, {5, 2}, {1.5, -2}, {5.5, -2}});
     EXPECT_NEAR(facing_cost(unlike, facing_parameters(), 0, 1), 0.25, 1e-12);
     EXPECT_NEAR(facing_cost(unlike, facing_parameters(), 2, 3), 0.25, 1e-12);
 }
 
 TEST(FacingCost, IsOneWhereNothingFaces) {
-    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}}), facing_parameters(), 0, 1), 1.0);
+    EXPECT_EQ(facing_cost(cones_at({{2, 2}, {5, 2}}), facing_parameters(), 0, 1), 1.0);
     // Too far away, across, or with a cone in common.
-    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {2, -8}, {5, -8}}), facing_parameters(), 0, 1), 1.0);
-    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {3.5, -1}, {3.5, -4}}), facing_parameters(), 0, 1), 1.0);
-    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, -1}}), facing_parameters(), 0, 1), 1.0);
+    EXPECT_EQ(facing_cost(cones_at({{2, 2}, {5, 2}, {2, -8}, {5, -8}}), facing_parameters(), 0, 1), 1.0);
+    EXPECT_EQ(facing_cost(cones_at({{2, 2}, {5, 2}, {3.5, -1}, {3.5, -4}}), facing_parameters(), 0, 1), 1.0);
+    EXPECT_EQ(facing_cost(cones_at({{2, 2}, {5, 2}, {5, -1}}), facing_parameters(), 0, 1), 1.0);
     // If the lane were that narrow, an edge to its own end would face it.
     RldParameters narrow = facing_parameters();
     narrow.d_w = 0.5;
-    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, 1}}), narrow, 0, 1), 1.0);
+    EXPECT_EQ(facing_cost(cones_at({{2, 2}, {5, 2}, {5, 1}}), narrow, 0, 1), 1.0);
 }
 
 /// An edge that (27) forbids cannot be a boundary, whether a problem lists it or not.
 TEST(FacingCost, CountsNoEdgeThatIsTooLong) {
     const RldParameters parameters = facing_parameters();
-    const Scene scene = scene_of({{2, 2}, {5, 2}, {0.5, -2}, {6.5, -2}});  // 6 m apart
+    const Scene scene = cones_at({{2, 2}, {5, 2}, {0.5, -2}, {6.5, -2}});  // 6 m apart
     EXPECT_EQ(facing_cost(scene, parameters, 0, 1), 1.0);
     EXPECT_EQ(make_problem(scene, parameters, EdgeExtent::all_pairs).edges.front().facing_cost, 1.0);
 }
@@ -119,7 +114,7 @@ TEST(NearEndFit, IsBestHalfALaneBesideTheCar) {
 
 /// A straight lane with uneven spacing: its only costs are the near ends and the unevenness.
 TEST(ShapeCosts, AddUpOnALaneByHand) {
-    const Scene lane = scene_of({{2, 2}, {4, 2}, {7, 2}, {2, -2}, {4, -2}, {7, -2}});
+    const Scene lane = cones_at({{2, 2}, {4, 2}, {7, 2}, {2, -2}, {4, -2}, {7, -2}});
     RldParameters parameters;
     parameters.d_w = 4.0;
     parameters.d_t = 2.0;

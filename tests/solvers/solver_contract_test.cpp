@@ -4,6 +4,7 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
@@ -22,6 +23,7 @@
 namespace conelane {
 namespace {
 
+using tests::cones_at;
 using tests::SolverCase;
 
 /// The solvers that prove their optimum. Requirements of all solvers are in solver_robustness_test.
@@ -29,14 +31,6 @@ std::vector<SolverCase> exact_solver_cases() {
     std::vector<SolverCase> all = tests::solver_cases();
     std::erase_if(all, [](const SolverCase& solver) { return !solver.entry->exact; });
     return all;
-}
-
-Scene scene_of(const std::vector<Point>& positions) {
-    Scene scene;
-    for (const Point& position : positions) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-    }
-    return scene;
 }
 
 /// Edges as cone indices; the car stands at the origin and looks along +x.
@@ -52,7 +46,7 @@ class SolverContract : public testing::TestWithParam<SolverCase> {
 /// Two straight boundaries at the expected spacing: every edge costs the benefit less its heading cost of
 /// zero, every angle is pi, so four edges cost -4.
 TEST_P(SolverContract, StraightLane) {
-    const Scene scene = scene_of({{1, 1.5}, {4.2, 1.5}, {7.4, 1.5}, {1, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
+    const Scene scene = cones_at({{1, 1.5}, {4.2, 1.5}, {7.4, 1.5}, {1, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
     const RldReport report = solve(scene);
     ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
     EXPECT_NEAR(*report.objective, -4.0, 1e-9);
@@ -64,26 +58,26 @@ TEST_P(SolverContract, StraightLane) {
 }
 
 TEST_P(SolverContract, FourConesAreTheSmallestLane) {
-    const RldReport report = solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}}));
+    const RldReport report = solve(cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}}));
     ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
     EXPECT_NEAR(*report.objective, -2.0, 1e-9);
 }
 
 TEST_P(SolverContract, FewerThanFourConesAreInfeasible) {
-    EXPECT_EQ(solve(scene_of({})).status, SolveStatus::infeasible);
-    EXPECT_EQ(solve(scene_of({{4, 1.5}})).status, SolveStatus::infeasible);
-    EXPECT_EQ(solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}})).status, SolveStatus::infeasible);
+    EXPECT_EQ(solve(cones_at({})).status, SolveStatus::infeasible);
+    EXPECT_EQ(solve(cones_at({{4, 1.5}})).status, SolveStatus::infeasible);
+    EXPECT_EQ(solve(cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}})).status, SolveStatus::infeasible);
 }
 
 TEST_P(SolverContract, AllConesNearAreInfeasible) {
-    EXPECT_EQ(solve(scene_of({{1, 1.5}, {4.2, 1.5}, {1, -1.5}, {4.2, -1.5}})).status,
+    EXPECT_EQ(solve(cones_at({{1, 1.5}, {4.2, 1.5}, {1, -1.5}, {4.2, -1.5}})).status,
               SolveStatus::infeasible);
 }
 
 TEST_P(SolverContract, FarEndsMoreThanTheLimitApartAreInfeasible) {
     RldParameters parameters;
     parameters.d_max = 2.9;
-    EXPECT_EQ(solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}}), parameters).status,
+    EXPECT_EQ(solve(cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}}), parameters).status,
               SolveStatus::infeasible);
 }
 
@@ -94,7 +88,7 @@ TEST_P(SolverContract, FarEndsThatNearlyTieWithTheLimit) {
         SCOPED_TRACE(beyond_m);
         RldParameters parameters;
         parameters.d_max = 3.0 - beyond_m;
-        const RldReport report = solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}}), parameters);
+        const RldReport report = solve(cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}}), parameters);
         EXPECT_EQ(report.status, beyond_m < 1e-9 ? SolveStatus::optimal : SolveStatus::infeasible)
             << report.message;
     }
@@ -102,7 +96,7 @@ TEST_P(SolverContract, FarEndsThatNearlyTieWithTheLimit) {
 
 /// Two cones at one place: no edge joins them, and one is left out.
 TEST_P(SolverContract, CoincidentCones) {
-    const RldReport report = solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}, {7.2, -1.5}}));
+    const RldReport report = solve(cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}, {7.2, -1.5}}));
     ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
     EXPECT_NEAR(*report.objective, -2.0, 1e-9);
     EXPECT_EQ(report.lane_graph->edges.size(), 2u);
@@ -113,7 +107,7 @@ TEST_P(SolverContract, CoincidentCones) {
 TEST_P(SolverContract, CarOnAMidpoint) {
     RldParameters parameters;
     parameters.w_p = 1e-3;
-    const Scene scene = scene_of({{0, 1.6}, {3.2, 1.6}, {6.4, 1.6}, {0, -1.6}, {3.2, -1.6}, {6.4, -1.6}});
+    const Scene scene = cones_at({{0, 1.6}, {3.2, 1.6}, {6.4, 1.6}, {0, -1.6}, {3.2, -1.6}, {6.4, -1.6}});
     const RldReport report = solve(scene, parameters);
     ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
     EXPECT_TRUE(check(scene, parameters, *report.lane_graph).violations.empty());
@@ -125,7 +119,7 @@ TEST_P(SolverContract, APayingCycleIsExcluded) {
     parameters.theta_t = 2.0;
     parameters.t_crit = 100.0;
     parameters.d_min = 0.0;
-    const Scene scene = scene_of(
+    const Scene scene = cones_at(
         {{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}, {30, 10}, {33.2, 10}, {33.2, 13.2}, {30, 13.2}});
     const RldReport report = solve(scene, parameters);
     ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
@@ -136,7 +130,7 @@ TEST_P(SolverContract, APayingCycleIsExcluded) {
 /// Three near cones in a row and four far ones: as printed, the one path joins both near endpoints and the
 /// other both far ones. Pairing near_far finds no lane here.
 TEST_P(SolverContract, PairingDecidesOnANearNearPath) {
-    const Scene scene = scene_of(
+    const Scene scene = cones_at(
         {{-1.4, 1.6}, {1.8, 1.6}, {5.0, 1.6}, {9.0, -1.6}, {12.2, -1.6}, {15.4, -1.6}, {18.6, -1.6}});
     RldParameters parameters;
     parameters.d_max = 16.0;
@@ -171,7 +165,7 @@ TEST_P(SolverContract, AgreesWithEveryPairOfPathsOnRandomScenes) {
 /// counts as between ends, so (7) lets them pass; moved by a quarter of the spacing they exclude each other.
 TEST_P(SolverContract, ExactlyFacingEdgesAreBetweenEnds) {
     const auto lane = [](double shift) {
-        return scene_of({{1, 1}, {4.2, 1}, {7.4, 1}, {1 + shift, -1}, {4.2 + shift, -1}, {7.4 + shift, -1}});
+        return cones_at({{1, 1}, {4.2, 1}, {7.4, 1}, {1 + shift, -1}, {4.2 + shift, -1}, {7.4 + shift, -1}});
     };
     const RldReport facing = solve(lane(0.0));
     ASSERT_EQ(facing.status, SolveStatus::optimal) << facing.message;
@@ -189,7 +183,7 @@ TEST_P(SolverContract, EquallyGoodLanesTie) {
     RldParameters parameters;
     parameters.w_p = 0.0;
     const Scene scene =
-        scene_of({{4, 1.5}, {7.2, 1.5}, {10.3, 2.3}, {10.3, 0.7}, {4, -2.5}, {7.2, -2.5}, {10.4, -2.5}});
+        cones_at({{4, 1.5}, {7.2, 1.5}, {10.3, 2.3}, {10.3, 0.7}, {4, -2.5}, {7.2, -2.5}, {10.4, -2.5}});
     const double length = std::hypot(3.1, 0.8);
     const double stated = -4.0 + parameters.w_s * std::pow((length - 3.2) / 1.7, 4.0) +
                           parameters.w_t * std::pow(std::atan2(0.8, 3.1) / 0.9, 4.0);
@@ -319,7 +313,7 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
 /// excludes them.
 TEST_P(SolverContract, CrossingEdgesAreForbiddenOnRequest) {
     // Edges across have the expected spacing; straight ones are too short to be allowed.
-    const Scene scene = scene_of({{4, 1.0}, {6.5, 1.0}, {4, -1.0}, {6.5, -1.0}});
+    const Scene scene = cones_at({{4, 1.0}, {6.5, 1.0}, {4, -1.0}, {6.5, -1.0}});
     RldParameters parameters;
     parameters.d_min = 0.0;
     parameters.s_crit = 1e-4;

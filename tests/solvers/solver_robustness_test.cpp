@@ -8,6 +8,7 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
 
@@ -28,19 +29,12 @@
 namespace conelane {
 namespace {
 
+using tests::cones_at;
 using tests::solver_cases;
 using tests::SolverCase;
 
-Scene scene_of(const std::vector<Point>& positions) {
-    Scene scene;
-    for (const Point& position : positions) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-    }
-    return scene;
-}
-
 Scene four_cones() {
-    return scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}});
+    return cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}});
 }
 const LaneGraph kFourConesLane{{{0, 1}, {2, 3}}};
 
@@ -151,14 +145,14 @@ TEST_P(SolverRobustness, TooFewConesForALane) {
     for (std::size_t count = 0; count <= all.size(); ++count) {
         const std::vector<Point> some(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
         SCOPED_TRACE(testing::Message() << count << " cones");
-        expect_no_lane(solver->solve(problem_of(scene_of(some)), {}));
+        expect_no_lane(solver->solve(problem_of(cones_at(some)), {}));
     }
 }
 
 TEST_P(SolverRobustness, AllConesAtOnePlace) {
     for (const Point& place : {Point(0, 0), Point(5, 1), Point(40, 0), Point(1e6, -1e6)}) {
         SCOPED_TRACE(testing::Message() << "at " << place.transpose());
-        expect_no_lane(solver->solve(problem_of(scene_of(std::vector<Point>(8, place))), {}));
+        expect_no_lane(solver->solve(problem_of(cones_at(std::vector<Point>(8, place))), {}));
     }
 }
 

@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/start_vertices.hpp"
+#include "tests/support/cones_at.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,7 @@ namespace conelane {
 namespace {
 
 using ::testing::ElementsAre;
+using tests::cones_at;
 
 StepScores zero_scores() {
     return {std::vector<double>(step_score_count(), 0.0)};
@@ -50,14 +52,6 @@ StepScores sensible_scores() {
     return scores;
 }
 
-Scene scene_of(const std::vector<Point>& points) {
-    Scene scene;
-    for (const Point& point : points) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), point});
-    }
-    return scene;
-}
-
 /// Six pairs along a straight, slightly shifted, and false positives.
 Scene random_scene(unsigned seed, std::size_t false_positives) {
     boost::random::mt19937_64 random(seed);
@@ -75,7 +69,7 @@ Scene random_scene(unsigned seed, std::size_t false_positives) {
         const double x = ahead(random);
         points.emplace_back(x, across(random));
     }
-    return scene_of(points);
+    return cones_at(points);
 }
 
 struct Search {
@@ -182,7 +176,7 @@ TEST(StepScores, ErrorsNameTheirEntry) {
 
 TEST(LaneBeam, MeasuresStepsByHand) {
     // Left 0, 2, 4, right 1, 3; cone 5 lies 0.5 m beside the segment from 2 to 4 and inside of the lane.
-    Search search(scene_of({{0, 2}, {0, -2}, {3, 2}, {4, -2}, {6, 3}, {4.5, 2}}), zero_scores());
+    Search search(cones_at({{0, 2}, {0, -2}, {3, 2}, {4, -2}, {6, 3}, {4.5, 2}}), zero_scores());
     search.start(1);
     std::size_t number = search.beam.add_start({0, 1});
     const StepMeasures start = search.beam.state(number).step;
@@ -226,7 +220,7 @@ TEST(LaneBeam, MeasuresStepsByHand) {
 }
 
 TEST(LaneBeam, RefusesSharpTurnsVerticesNearTheOtherSideAndThoseOnTheLane) {
-    Search search(scene_of({{0, 2}, {3, -2}, {3, 2}, {3.1, 4}, {2.9, 5}, {4.5, 0.4}}), zero_scores());
+    Search search(cones_at({{0, 2}, {3, -2}, {3, 2}, {3.1, 4}, {2.9, 5}, {4.5, 0.4}}), zero_scores());
     search.start(1);
     const std::size_t start = search.beam.add_start({0, 1});
     const std::size_t number = search.beam.extend(start, 2);
@@ -236,7 +230,7 @@ TEST(LaneBeam, RefusesSharpTurnsVerticesNearTheOtherSideAndThoseOnTheLane) {
     EXPECT_EQ(search.beam.next_side(search.beam.state(on)), kRight);
     EXPECT_EQ(search.beam.extend(on, 5), LaneBeam::kNone) << "2.2 m off the left vertex";
     // From 0 over 2 the boundary would turn by more than a right angle to 4.
-    Search turning(scene_of({{0, 2}, {8, -2}, {3, 2}, {2.9, 5}, {3.1, 5}}), zero_scores());
+    Search turning(cones_at({{0, 2}, {8, -2}, {3, 2}, {2.9, 5}, {3.1, 5}}), zero_scores());
     turning.start(1);
     const std::size_t straight = turning.beam.extend(turning.beam.add_start({0, 1}), 2);
     EXPECT_EQ(turning.beam.extend(straight, 3), LaneBeam::kNone);
@@ -432,7 +426,7 @@ TEST(LaneBeam, AMirroredSceneHasTheMirroredLaneInAnyOrderOfTheCones) {
 
 TEST(LaneBeam, HasNothingWhereThereIsNoStartOrNoSegment) {
     EXPECT_FALSE(Search({}, sensible_scores()).best(8));
-    EXPECT_FALSE(Search(scene_of({{1, 1.8}, {1, -1.8}}), sensible_scores()).best(8));
+    EXPECT_FALSE(Search(cones_at({{1, 1.8}, {1, -1.8}}), sensible_scores()).best(8));
 }
 
 }  // namespace
