@@ -118,6 +118,41 @@ TEST(RldDetector, TriesOtherValuesOfDNearWhereNoLaneGraphIsFeasible) {
     EXPECT_EQ(whole.message, "");
 }
 
+/// A solver without a search: it answers what the test says, one report a call.
+class Told : public RldSolver {
+  public:
+    explicit Told(std::vector<RldReport> reports) : reports_(std::move(reports)) {}
+
+  private:
+    void run(const LaneGraphProblem&, const SolveLimits&, const LaneGraph*, RldReport& report) override {
+        report = reports_.at(calls_++);
+    }
+    std::vector<RldReport> reports_;
+    std::size_t calls_ = 0;
+};
+
+TEST(RldDetector, ATryThatIsNotFinishedIsNotTheAnswerNoLane) {
+    RldReport infeasible;
+    infeasible.status = SolveStatus::infeasible;
+    RldReport stopped;
+    stopped.status = SolveStatus::stopped;
+    stopped.stopped_by = StopReason::time;
+    RldReport failed;  // its status is error
+    failed.message = "out of luck";
+    const auto answer = [](std::vector<RldReport> reports) {
+        return make_rld_detector(std::make_unique<Told>(std::move(reports)),
+                                 {.parameters = {}, .cones = {}, .other_d_near_m = {5.0, 8.0}})
+            ->detect(straight(), tests::kNoTimeLimit);
+    };
+    EXPECT_EQ(answer({infeasible, infeasible, infeasible}).status, LaneStatus::none);
+    const LaneAnswer of_stopped = answer({infeasible, stopped});
+    EXPECT_EQ(of_stopped.status, LaneStatus::stopped);
+    EXPECT_EQ(of_stopped.stopped_by, StopReason::time);
+    const LaneAnswer of_failed = answer({infeasible, failed});
+    EXPECT_EQ(of_failed.status, LaneStatus::error);
+    EXPECT_EQ(of_failed.message, "out of luck");
+}
+
 TEST(RldDetector, ScenesThatAreNotValidAreRefusedByItAndBySolveScene) {
     const auto solver = find_rld_solver("path-pair")->make(Formulation::tight);
     const auto refusals = [&](const Scene& scene) {
