@@ -63,7 +63,8 @@ class Verification {
         std::size_t arc;  ///< the next one
         double cost;      ///< of the turn
     };
-    /// An edge that (27), or a gap, and the limits of nearest cones allow.
+    /// An edge that (27) or a gap allows. It may face others although no walk uses it, because it joins no
+    /// nearest cones.
     struct AllowedEdge {
         std::size_t i;
         std::size_t j;
@@ -210,7 +211,6 @@ class Verification {
                 const bool is_long = exceeds_s_crit({i, j});
                 const double length = length_of({i, j});
                 if (length < kMinEdge || (is_long && !is_over_gap({i, j}))) continue;
-                if (!joins_nearest({i, j}, is_long ? p_.k_gap : p_.k_edge)) continue;
                 edges.push_back(
                     {i, j, position(j) - position(i), length, 0.5 * (position(i) + position(j)), is_long});
             }
@@ -236,7 +236,7 @@ class Verification {
         return faults;
     }
 
-    /// v_ij of formulation.md: the cost of the allowed edge that faces this one best.
+    /// v_ij of formulation.md: the cost of the edge that faces this one best.
     [[nodiscard]] double facing_cost(const AllowedEdge& edge, const std::vector<AllowedEdge>& all) const {
         double best = 1.0;
         for (const AllowedEdge& other : all) {
@@ -261,6 +261,7 @@ class Verification {
         std::vector<std::vector<std::size_t>> leaving(scene_.cones.size());  // arcs by their first cone
         const std::vector<AllowedEdge> edges = allowed_edges();
         for (const AllowedEdge& edge : edges) {
+            if (!joins_nearest({edge.i, edge.j}, edge.over_gap ? p_.k_gap : p_.k_edge)) continue;
             const double across = std::abs(cross(edge.vector, heading_));
             const double car_distance = std::max((edge.middle - scene_.pose.position).norm(), 0.5);
             const double confidence =

@@ -77,10 +77,17 @@ class Builder {
         const Point& c = scene_.cones[cone].position;
         return {Real(c.x()) - Real(scene_.pose.position.x()), Real(c.y()) - Real(scene_.pose.position.y())};
     }
-    [[nodiscard]] Vector middle_from_car(const Edge& edge) const {
+    struct MeasuredEdge {
+        Edge cones;
+        Vector vector;
+        Real length;
+        Vector middle;  ///< from the car
+    };
+    [[nodiscard]] MeasuredEdge measured(const Edge& edge) const {
+        const Vector vector = from_to(edge.i, edge.j);
         const Vector a = from_car(edge.i);
         const Vector b = from_car(edge.j);
-        return {(a.x + b.x) / 2, (a.y + b.y) / 2};
+        return {edge, vector, vector.length(), {(a.x + b.x) / 2, (a.y + b.y) / 2}};
     }
     /// Across the car's heading.
     [[nodiscard]] Real across(const Vector& v) const { return abs(v.x * sin_ - v.y * cos_); }
@@ -94,26 +101,35 @@ class Builder {
                 result_.along_heading.push_back(report.along_heading > 0);
             }
         }
-        for (const Edge& edge : result_.edges) {
-            vectors_.push_back(from_to(edge.i, edge.j));
-            lengths_.push_back(vectors_.back().length());
-            middles_.push_back(middle_from_car(edge));
-        }
+        for (const Edge& edge : result_.edges) measured_.push_back(measured(edge));
+        if (p_.w_v > 0.0) find_facing_edges();
         for (std::size_t e = 0; e < result_.edges.size(); ++e)
             result_.edge_cost.push_back(rounded_down(edge_cost(e)));
+    }
+
+    /// All edges that (27) allows, those that join no nearest cones too.
+    void find_facing_edges() {
+        for (std::size_t i = 0; i < scene_.cones.size(); ++i) {
+            for (std::size_t j = i + 1; j < scene_.cones.size(); ++j) {
+                const MeasuredEdge edge = measured({i, j});
+                const Real spacing = fourth((edge.length - Real(p_.d_e)) / Real(p_.d_t));
+                if (edge.length >= Real("1e-100") && spacing <= Real(p_.s_crit) + Real("1e-9"))
+                    facing_.push_back(edge);
+            }
+        }
     }
 
     /// (29) without the costs of turns and ends.
     [[nodiscard]] Real edge_cost(std::size_t e) const {
         const Edge& edge = result_.edges[e];
-        const Real car_distance = std::max(middles_[e].length(), Real(0.5));
+        const Real car_distance = std::max(measured_[e].middle.length(), Real(0.5));
         Real benefit = p_.w_b;
         if (p_.use_confidence) {
             benefit *= Real(scene_.cones[edge.i].confidence) * Real(scene_.cones[edge.j].confidence);
         }
-        Real cost = Real(p_.w_s) * fourth((lengths_[e] - Real(p_.d_e)) / Real(p_.d_t)) +
-                    Real(p_.w_p) * fourth(across(vectors_[e]) / car_distance) - benefit;
-        if (p_.w_v > 0.0) cost += Real(p_.w_v) * facing_cost(e);
+        Real cost = Real(p_.w_s) * fourth((measured_[e].length - Real(p_.d_e)) / Real(p_.d_t)) +
+                    Real(p_.w_p) * fourth(across(measured_[e].vector) / car_distance) - benefit;
+        if (p_.w_v > 0.0) cost += Real(p_.w_v) * facing_cost(measured_[e]);
         const Real faults = p_.w_color > 0.0 || learned_ ? color_faults(edge) : Real(0);
         if (p_.w_color > 0.0) cost += Real(p_.w_color) * faults;
         if (learned_) cost += learned_->edge(edge.i, edge.j, faults);
@@ -121,20 +137,19 @@ class Builder {
     }
 
     /// v_ij of formulation.md.
-    [[nodiscard]] Real facing_cost(std::size_t e) const {
-        const Edge& edge = result_.edges[e];
+    [[nodiscard]] Real facing_cost(const MeasuredEdge& edge) const {
         Real best = 1;
-        for (std::size_t f = 0; f < result_.edges.size(); ++f) {
-            const Edge& other = result_.edges[f];
-            if (other.i == edge.i || other.i == edge.j || other.j == edge.i || other.j == edge.j) continue;
-            if (fourth((lengths_[f] - Real(p_.d_e)) / Real(p_.d_t)) > Real(p_.s_crit) + Real("1e-9"))
-                continue;  // over a gap
-            const Vector way{middles_[f].x - middles_[e].x, middles_[f].y - middles_[e].y};
-            const Real ahead = dot(way, vectors_[e]) / lengths_[e];
-            const Real off_width = abs(wedge(vectors_[e], way)) / lengths_[e] - Real(p_.d_w);
+        for (const MeasuredEdge& other : facing_) {
+            if (other.cones.i == edge.cones.i || other.cones.i == edge.cones.j ||
+                other.cones.j == edge.cones.i || other.cones.j == edge.cones.j) {
+                continue;
+            }
+            const Vector way{other.middle.x - edge.middle.x, other.middle.y - edge.middle.y};
+            const Real ahead = dot(way, edge.vector) / edge.length;
+            const Real off_width = abs(wedge(edge.vector, way)) / edge.length - Real(p_.d_w);
             const Real turned =
-                wedge(vectors_[e], vectors_[f]) / (lengths_[e] * lengths_[f] * Real(p_.theta_v));
-            const Real longer = (lengths_[f] - lengths_[e]) / Real(p_.d_l);
+                wedge(edge.vector, other.vector) / (edge.length * other.length * Real(p_.theta_v));
+            const Real longer = (other.length - edge.length) / Real(p_.d_l);
             best = std::min(best, Real((square(ahead) + square(off_width)) / square(Real(p_.d_v)) +
                                        square(turned) + square(longer)));
         }
@@ -207,7 +222,7 @@ class Builder {
         const Vector on = from_to(result_.head(a), result_.head(b));
         const Real angle = atan2(abs(wedge(back, on)), dot(back, on));
         Real cost = Real(p_.w_t) * fourth((angle - Real(p_.theta_e)) / Real(p_.theta_t)) +
-                    Real(p_.w_u) * square((lengths_[a / 2] - lengths_[b / 2]) / Real(p_.d_t));
+                    Real(p_.w_u) * square((measured_[a / 2].length - measured_[b / 2].length) / Real(p_.d_t));
         if (learned_) cost += learned_->turn(result_.tail(a), result_.head(a), result_.head(b));
         return cost;
     }
@@ -244,9 +259,8 @@ class Builder {
     std::optional<LearnedReference<Real>> learned_;
     Real cos_;
     Real sin_;
-    std::vector<Vector> vectors_;  ///< by edge
-    std::vector<Real> lengths_;
-    std::vector<Vector> middles_;  ///< from the car
+    std::vector<MeasuredEdge> measured_;  ///< by edge of the result
+    std::vector<MeasuredEdge> facing_;
     ExactScene result_;
 };
 

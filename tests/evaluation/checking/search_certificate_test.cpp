@@ -98,6 +98,24 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
     EXPECT_GT(verified, 5);
 }
 
+/// An edge that joins no nearest cones is in no lane graph, but may face one that is.
+TEST(SearchCertificate, OfFacingCostsAmongNearestConesIsVerified) {
+    int verified = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 10);
+        RldParameters parameters;
+        parameters.w_v = 0.8;
+        parameters.k_edge = static_cast<double>(1 + seed % 3);
+        const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
+        if (!certificate.lane_graph) continue;
+        const SearchVerdict verdict = verify(certificate, scene, parameters);
+        EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+        ++verified;
+    }
+    EXPECT_GT(verified, 10);
+}
+
 /// The weight 1/2 on each heading edge beyond the second lowers the relaxation by 1, so the enumeration has
 /// to prove the rest: only the frontiers of the two boundaries are left.
 TEST(SearchCertificate, IsEnumeratedWhereTheMultipliersAreWeak) {

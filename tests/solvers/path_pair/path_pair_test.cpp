@@ -298,17 +298,18 @@ TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
 }
 
 /// The verifier uses the same shape costs as the solver: it finds the same bound, and nearly always a lower
-/// one if one of them is cheaper.
+/// one if one of them is cheaper. Edges that join no nearest cones count among those that face an edge.
 TEST(PathPairCertificate, RestsOnEveryShapeCost) {
-    const RldParameters parameters = with_shape_costs({});
-    std::vector<RldParameters> cheaper(3, parameters);
-    cheaper[0].w_u = 0.0;
-    cheaper[1].w_v = 0.0;
-    cheaper[2].w_n *= 1.5;
-    std::vector<int> refused(cheaper.size(), 0);
+    std::vector<int> refused(3, 0);
     int finite = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
+        RldParameters parameters = with_shape_costs({});
+        parameters.k_edge = seed % 4 == 3 ? 3.0 : 0.0;
+        std::vector<RldParameters> cheaper(refused.size(), parameters);
+        cheaper[0].w_u = 0.0;
+        cheaper[1].w_v = 0.0;
+        cheaper[2].w_n *= 1.5;
         const Scene scene = tests::random_scene(seed, 16);
         const BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
         const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
