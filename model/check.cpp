@@ -49,7 +49,11 @@ struct Nearest {
 Nearest nearest_points(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
     const Vector u = b - a;
     const Vector v = d - c;
-    const auto at = [&](Real s, Real t) { return Nearest{length(along(a, b, s) - along(c, d, t)), s, t}; };
+    const Vector way = c - a;
+    // From `a` on: far from the origin, places between two points are rounded by more than a tie.
+    const auto at = [&](Real s, Real t) {
+        return Nearest{length({way.x + t * v.x - s * u.x, way.y + t * v.y - s * u.y}), s, t};
+    };
     const auto foot = [](const Vector& p, const Vector& from, const Vector& direction) {
         const Real squared = dot(direction, direction);
         return squared > 0 ? std::clamp(dot(p - from, direction) / squared, Real{0}, Real{1}) : Real{0};

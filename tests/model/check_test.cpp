@@ -107,6 +107,19 @@ TEST(Check, BoundariesKeepTheirDistanceExceptBetweenFacingCones) {
 }
 
 /// {1, 5} and {2, 4} cross in (5.8, 0); their ends are more than 2 m from each other.
+/// Two facing edges whose ends are 1.6e-12 m farther apart than their nearest points: within a tie. So far
+/// from the origin, coordinates are 1e-4 m apart.
+TEST(Check, FacingConesAreSeenFarFromTheOrigin) {
+    Scene scene;
+    scene.pose = {{1e12, 0.3}, 0.75};
+    for (const Point& position : {Point{1000000000001.8542, 2.710760714506913},
+                                  {1000000000004.0493, 4.755676994576915},
+                                  {1000000000002.5359, 1.979071845633092},
+                                  {1000000000004.731, 4.023988125703094}})
+        add_cone(scene, position);
+    EXPECT_THAT(violations(scene, {}, {{{0, 1}, {2, 3}}}), IsEmpty());
+}
+
 TEST(Check, EdgesThatCrossAreAtNoDistance) {
     const LaneGraph crossing{{{1, 5}, {2, 4}}};
     RldParameters parameters;
