@@ -63,8 +63,8 @@ class Verification {
         std::size_t arc;  ///< the next one
         double cost;      ///< of the turn
     };
-    /// An edge that (27) or a gap allows. It may face others although no walk uses it, because it joins no
-    /// nearest cones.
+    /// An edge that (27) or a gap allows. No walk uses one that does not join nearest cones, but such an edge
+    /// still faces others.
     struct AllowedEdge {
         std::size_t i;
         std::size_t j;

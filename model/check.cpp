@@ -50,7 +50,8 @@ Nearest nearest_points(const Vector& a, const Vector& b, const Vector& c, const 
     const Vector u = b - a;
     const Vector v = d - c;
     const Vector way = c - a;
-    // From `a` on: far from the origin, places between two points are rounded by more than a tie.
+    // Relative to `a`: far from the origin, the coordinates of the nearest points would be rounded by more
+    // than a tie.
     const auto at = [&](Real s, Real t) {
         return Nearest{length({way.x + t * v.x - s * u.x, way.y + t * v.y - s * u.y}), s, t};
     };

@@ -107,7 +107,7 @@ class Builder {
             result_.edge_cost.push_back(rounded_down(edge_cost(e)));
     }
 
-    /// All edges that (27) allows, those that join no nearest cones too.
+    /// All edges that (27) allows: an edge that does not join nearest cones still faces others.
     void find_facing_edges() {
         for (std::size_t i = 0; i < scene_.cones.size(); ++i) {
             for (std::size_t j = i + 1; j < scene_.cones.size(); ++j) {
@@ -260,7 +260,7 @@ class Builder {
     Real cos_;
     Real sin_;
     std::vector<MeasuredEdge> measured_;  ///< by edge of the result
-    std::vector<MeasuredEdge> facing_;
+    std::vector<MeasuredEdge> facing_;    ///< those that can face others; only if w_v > 0
     ExactScene result_;
 };
 
