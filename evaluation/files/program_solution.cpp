@@ -5,14 +5,25 @@
 #include <algorithm>
 #include <cmath>
 #include <istream>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <unordered_map>
+
+#include <fmt/format.h>
 
 namespace conelane {
 namespace {
 
 using Status = SolutionFile::Status;
+
+/// Solvers round whole numbers and rows to about 1e-6 and may print fewer digits.
+constexpr double kPointTolerance = 1e-5;
+
+bool is_same_objective(double a, double b) {
+    constexpr double kTolerance = 1e-6;
+    return std::abs(a - b) <= kTolerance * std::max({1.0, std::abs(a), std::abs(b)});
+}
 
 /// The number that `text` begins with, if there is one and it is finite.
 std::optional<double> find_number(const std::string& text) {
@@ -24,6 +35,7 @@ std::optional<double> find_number(const std::string& text) {
 
 /// The lines =KEY= WORDS of a file in any format.
 struct Remarks {
+    std::set<std::string> keys;
     std::optional<Status> status;
     std::optional<double> objective;
     std::optional<double> bound;
@@ -65,6 +77,7 @@ class Lines {
             if (!number) fail("must be " + key + " VALUE");
             return number;
         };
+        if (!remarks_.keys.insert(key).second) fail(key + " is there twice");
         if (key == "=obj=") {
             remarks_.objective = value();
         } else if (key == "=infeas=") {
@@ -104,7 +117,8 @@ class Lines {
 /// A point that lists columns by name, without those at 0.
 class NamedPoint {
   public:
-    NamedPoint(const BinaryProgram& program, SolutionFile& solution) : solution_(solution) {
+    NamedPoint(const BinaryProgram& program, SolutionFile& solution)
+        : program_(program), solution_(solution) {
         for (std::size_t c = 0; c < program.columns.size(); ++c) {
             column_of_.emplace(to_string(program.columns[c].label), c);
         }
@@ -130,20 +144,36 @@ class NamedPoint {
         set(name, value, lines);
     }
 
+    [[nodiscard]] bool is_row(const std::string& name) const {
+        return !column_of_.contains(name) && std::ranges::any_of(program_.rows, [&](const auto& row) {
+            return to_string(row.label) == name;
+        });
+    }
+
   private:
+    const BinaryProgram& program_;
     SolutionFile& solution_;
     std::unordered_map<std::string, std::size_t> column_of_;
     std::vector<bool> is_set_;
 };
 
+/// The finite number after `key` in a line.
+double number_after(std::string_view key, const Lines& lines) {
+    const auto number = find_number(lines.text().substr(lines.text().find(key) + key.size()));
+    if (!number) lines.fail("'" + std::string(key) + "' must be followed by a finite number");
+    return *number;
+}
+
 /// "Optimal - objective value -4.5", or Stopped or Infeasible, then "INDEX NAME VALUE REDUCED_COST", "**"
-/// before values out of bounds.
+/// before values out of bounds; rows first if they are printed too. "Optimal (within gap tolerance)" is no
+/// optimum.
 SolutionFile read_cbc(Lines& lines, const BinaryProgram& program) {
     SolutionFile solution;
     const std::string& head = lines.text();
-    if (head.starts_with("Optimal")) {
+    constexpr std::string_view kObjective = "objective value";
+    if (head.starts_with("Optimal - ")) {
         solution.status = Status::optimal;
-    } else if (head.starts_with("Stopped")) {
+    } else if (head.starts_with("Optimal") || head.starts_with("Stopped")) {
         // After "Stopped on time (no integer solution - continuous used)", the values are not an incumbent.
         if (head.find("no integer solution") != std::string::npos) return solution;
         solution.status = Status::feasible;
@@ -151,9 +181,7 @@ SolutionFile read_cbc(Lines& lines, const BinaryProgram& program) {
         solution.status = Status::infeasible;
         return solution;
     }
-    constexpr std::string_view kObjective = "objective value";
-    const std::size_t place = head.find(kObjective);
-    if (place != std::string::npos) solution.objective = find_number(head.substr(place + kObjective.size()));
+    solution.objective = number_after(kObjective, lines);
     NamedPoint point(program, solution);
     while (lines.next()) {
         std::istringstream words(lines.text());
@@ -162,7 +190,7 @@ SolutionFile read_cbc(Lines& lines, const BinaryProgram& program) {
         if (!(words >> index)) continue;
         if (index == "**") words >> index;
         if (!(words >> name >> value)) lines.fail("must be INDEX NAME VALUE");
-        point.set(name, value, lines);
+        if (!point.is_row(name)) point.set(name, value, lines);
     }
     return solution;
 }
@@ -224,7 +252,7 @@ SolutionFile read_highs(Lines& lines, const BinaryProgram& program) {
         if (text == "Feasible") {
             has_point = true;
         } else if (text.starts_with("Objective ")) {
-            solution.objective = find_number(text.substr(10));
+            solution.objective = number_after("Objective ", lines);
         } else if (has_point && text.starts_with("# Columns")) {
             point.emplace(program, solution);
         } else if (text.starts_with("# Rows") || text.starts_with("# Dual")) {
@@ -256,7 +284,7 @@ SolutionFile read_scip(Lines& lines, const BinaryProgram& program) {
         constexpr std::string_view kObjective = "objective value:";
         if (lines.is_blank() || text.starts_with("no solution available")) continue;
         if (text.starts_with(kObjective)) {
-            solution.objective = find_number(text.substr(kObjective.size()));
+            solution.objective = number_after(kObjective, lines);
             point.emplace(program, solution);
         } else if (point) {
             point->set_line(lines);
@@ -289,7 +317,7 @@ SolutionFile read_miplib(Lines& lines, const BinaryProgram& program) {
             continue;
         }
         constexpr std::string_view kGurobi = "# Objective value =";
-        if (text.starts_with(kGurobi)) solution.objective = find_number(text.substr(kGurobi.size()));
+        if (text.starts_with(kGurobi)) solution.objective = number_after(kGurobi, lines);
     } while (lines.next());
     // A point at 0 may have no line except its objective.
     has_point = has_point || lines.remarks().objective || solution.objective;
@@ -325,6 +353,7 @@ SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program) 
     const std::string first_word = text.substr(0, text.find(' '));
     const bool by_cbc = text.starts_with("Optimal") || text.starts_with("Stopped") ||
                         text.starts_with("Infeasible") || text.starts_with("Integer infeasible");
+    bool is_miplib = false;
     SolutionFile solution;
     if (first_word == "c" || first_word == "s") {
         solution = read_glpsol(lines, program);
@@ -336,12 +365,20 @@ SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program) 
         solution = read_cbc(lines, program);
     } else if (has_remarks || text.starts_with('#') || names_a_column(text, program)) {
         solution = read_miplib(lines, program);
+        is_miplib = true;
     } else {
         lines.fail("is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB .sol");
     }
     while (lines.next()) {  // skips what follows the format's last line
     }
+    solution.states_status = remarks.status || !is_miplib;
+    if (remarks.status == Status::optimal && solution.status != Status::optimal && !is_miplib)
+        lines.fail("=status= says optimal, the head of the solution does not");
     if (remarks.status) solution.status = *remarks.status;
+    if (remarks.objective && solution.objective &&
+        !is_same_objective(*remarks.objective, *solution.objective))
+        lines.fail(fmt::format("=obj= says {:.9g}, the head of the solution {:.9g}", *remarks.objective,
+                               *solution.objective));
     if (remarks.objective) solution.objective = remarks.objective;
     solution.bound = remarks.bound;
     solution.nodes = remarks.nodes;
@@ -351,6 +388,44 @@ SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program) 
     if (!claims_point) solution.point.clear();
     if (claims_point && solution.point.empty()) lines.fail("there is no point with this status");
     return solution;
+}
+
+std::string fault_of(const SolutionFile& solution, const BinaryProgram& program) {
+    if (solution.point.empty()) return {};
+    for (std::size_t c = 0; c < program.columns.size(); ++c) {
+        const BinaryProgram::Column& column = program.columns[c];
+        const double value = solution.point[c];
+        if (value < column.lower - kPointTolerance || value > column.upper + kPointTolerance)
+            return fmt::format("column {} is {:g}, outside {:g} to {:g}", to_string(column.label), value,
+                               column.lower, column.upper);
+        if (column.integer && std::abs(value - std::round(value)) > kPointTolerance)
+            return fmt::format("column {} is {:g}, not integral", to_string(column.label), value);
+    }
+    for (std::size_t r = 0; r < program.rows.size(); ++r) {
+        double sum = 0.0;
+        double largest = 1.0;
+        for (int e = program.row_starts[r]; e < program.row_starts[r + 1]; ++e) {
+            const auto entry = static_cast<std::size_t>(e);
+            const double term = program.entry_values[entry] *
+                                solution.point[static_cast<std::size_t>(program.entry_columns[entry])];
+            sum += term;
+            largest = std::max(largest, std::abs(term));
+        }
+        const BinaryProgram::RowBounds& row = program.rows[r];
+        if (sum < row.lower - kPointTolerance * largest || sum > row.upper + kPointTolerance * largest)
+            return fmt::format("row {} of the program is {:g}, outside {:g} to {:g}", to_string(row.label),
+                               sum, row.lower, row.upper);
+    }
+    double value = 0.0;
+    for (std::size_t c = 0; c < program.columns.size(); ++c)
+        value += program.columns[c].objective * solution.point[c];
+    if (solution.objective && !is_same_objective(*solution.objective, value))
+        return fmt::format("it claims the objective {:.9g}, its point has {:.9g}", *solution.objective,
+                           value);
+    if (solution.bound && *solution.bound > value && !is_same_objective(*solution.bound, value))
+        return fmt::format("it claims the bound {:.9g}, its point has the objective {:.9g}", *solution.bound,
+                           value);
+    return {};
 }
 
 }  // namespace conelane

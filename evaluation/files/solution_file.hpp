@@ -22,7 +22,7 @@ struct SolutionRecord {
     std::string solver;
     std::string formulation;
     std::string status;   ///< optimal, feasible, infeasible, stopped or error
-    std::string message;  ///< if status is error
+    std::string message;  ///< why it has this status; always there with error
     std::vector<std::pair<ConeId, ConeId>> edges;
     std::optional<double> objective;
     std::optional<double> bound;

@@ -284,8 +284,18 @@ SolverProgram::Answer SolverProgram::solve(const BinaryProgram& program, const S
     } catch (const std::system_error& failure) {
         answer.fault = failure.what();
     }
+    SolutionFile& solution = answer.solution;
+    if (told.status == Status::optimal && solution.states_status && solution.status != Status::optimal &&
+        answer.fault.empty())
+        answer.fault = "it says optimal, its solution file does not";
+    if (says_status) solution.status = told.status;
+    if (told.bound) solution.bound = told.bound;
+    if (told.nodes) solution.nodes = told.nodes;
+    if (told.engine_ms) solution.engine_ms = told.engine_ms;
+    if (!told.solver.empty()) solution.solver = told.solver;
+    if (answer.fault.empty()) answer.fault = fault_of(solution, program);
     if (!answer.fault.empty()) {
-        answer.solution = {};
+        solution = {};
         ++failures_;
         lost_ms_ += watch.elapsed_ms();
         last_fault_ = answer.fault;
@@ -293,12 +303,6 @@ SolverProgram::Answer SolverProgram::solve(const BinaryProgram& program, const S
     }
     failures_ = 0;
     lost_ms_ = 0.0;
-    SolutionFile& solution = answer.solution;
-    if (says_status) solution.status = told.status;
-    if (told.bound) solution.bound = told.bound;
-    if (told.nodes) solution.nodes = told.nodes;
-    if (told.engine_ms) solution.engine_ms = told.engine_ms;
-    if (!told.solver.empty()) solution.solver = told.solver;
     return answer;
 }
 

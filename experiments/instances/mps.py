@@ -74,26 +74,41 @@ class Solution:
 
 
 _NUMBER = r"[-+]?(\d|\.\d|inf|nan)"
-_STATUS = [("infeasible", "infeasible"), ("optimal", "optimal"), ("stopped", "feasible"), ("feasible", "feasible"), ("limit", "feasible")]
+_STATUS = [("infeasible", "infeasible"), ("gap", "feasible"), ("optimal", "optimal"), ("stopped", "feasible"), ("feasible", "feasible"),
+           ("limit", "feasible")]
 
 
 def _status_of(text):
     return next((status for word, status in _STATUS if word in text.lower()), "unknown")
 
 
-def read_solution(path, columns):
+def is_same(a, b, tolerance=1e-6):
+    """Whether two objectives are the same, within the tolerance of the larger one or of 1."""
+    return abs(a - b) <= tolerance * max(1.0, abs(a), abs(b))
+
+
+def _set(solution, column, value):
+    if column in solution.values:
+        raise ValueError(f"{column} is there twice")
+    solution.values[column] = float(value)
+
+
+def read_solution(path, columns, rows=()):
     """A file of CBC, GLPK, HiGHS, SCIP, MIPLIB or Gurobi, told by its lines. `columns` are the names in the order of the program, for
-    GLPK, which numbers them. Lines `=status=`, `=bound=`, `=obj=` and `=infeas=` say what a format cannot."""
+    GLPK, which numbers them; CBC may list `rows` too. Lines `=status=`, `=bound=`, `=obj=` and `=infeas=` say what a format cannot. Raises
+    ValueError for a column that is there twice and where two lines contradict each other."""
     with open(path, encoding="utf-8") as stream:
         lines = [line.rstrip("\n") for line in stream]
     solution, names, body = Solution(), list(columns), lines
     head = lines[0] if lines else ""
-    if found := re.match(r"(Optimal|Infeasible|Integer infeasible|Stopped[^-]*|Unbounded)[^-]*- objective value (\S+)", head):  # CBC
+    is_named = True  # the format says its status
+    if found := re.match(r"((?:Optimal|Infeasible|Integer infeasible|Stopped|Unbounded).*) - objective value (\S+)", head):  # CBC
         solution.status, solution.objective, body = _status_of(found[1]), float(found[2]), []
-        for line in lines[1:]:
+        points = "" if "no integer solution" in head else lines[1:]  # the relaxation's point is no answer
+        for line in points:
             word = line.replace("**", " ").split()
-            if len(word) >= 3 and word[0].isdigit():
-                solution.values[word[1]] = float(word[2])
+            if len(word) >= 3 and word[0].isdigit() and word[1] not in rows:
+                _set(solution, word[1], word[2])
     elif head.startswith("c ") and any(line.startswith("s ") for line in lines):  # GLPK
         body = []
         for line in lines:
@@ -102,7 +117,7 @@ def read_solution(path, columns):
                 solution.status = {"o": "optimal", "f": "feasible", "n": "infeasible"}.get(word[4], "unknown")
                 solution.objective = float(word[5])
             elif word[:1] == ["j"]:
-                solution.values[names[int(word[1]) - 1]] = float(word[2])
+                _set(solution, names[int(word[1]) - 1], word[2])
     elif head.startswith("Model status"):  # HiGHS
         solution.status, body, inside = _status_of(lines[1]), [], False
         for line in lines[2:]:
@@ -114,24 +129,31 @@ def read_solution(path, columns):
                 if line.startswith("# Dual"):
                     break
             elif inside and len(word) == 2:
-                solution.values[word[0]] = float(word[1])
+                _set(solution, *word)
     elif head.startswith("solution status:"):  # SCIP
         solution.status = _status_of(head)
-    for line in lines:
-        word = line.split()
-        if len(word) >= 2 and word[0] in ("=status=", "=bound=", "=obj="):
-            if word[0] == "=status=":
-                solution.status = word[1]
-            else:
-                setattr(solution, "bound" if word[0] == "=bound=" else "objective", float(word[1]))
-        elif word[:1] == ["=infeas="]:
-            solution.status = "infeasible"
+    else:
+        is_named = False
     for line in body:
         word = line.split()
         if found := re.match(r"(?:# Objective value =|objective value:)\s*(\S+)", line):
             solution.objective = float(found[1])
         elif len(word) >= 2 and word[0][0] not in "#=" and re.match(_NUMBER, word[1]):
-            solution.values[word[0]] = float(word[1])
+            _set(solution, *word[:2])
+    for line in lines:
+        word = line.split()
+        if len(word) >= 2 and word[0] == "=status=":
+            if is_named and word[1] == "optimal" and solution.status != "optimal":
+                raise ValueError(f"=status= says optimal, the head of the file {solution.status}")
+            solution.status = word[1]
+        elif len(word) >= 2 and word[0] == "=bound=":
+            solution.bound = float(word[1])
+        elif len(word) >= 2 and word[0] == "=obj=":
+            if solution.objective is not None and not is_same(float(word[1]), solution.objective):
+                raise ValueError(f"=obj= says {word[1]}, the head of the file {solution.objective:.9g}")
+            solution.objective = float(word[1])
+        elif word[:1] == ["=infeas="]:
+            solution.status = "infeasible"
     if solution.status == "unknown" and (solution.values or solution.objective is not None):
         solution.status = "feasible"
     return solution

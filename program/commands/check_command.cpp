@@ -1,6 +1,6 @@
 #include "conelane/check.hpp"
+#include "evaluation/checking/claim_verdict.hpp"
 #include "evaluation/checking/exact_program.hpp"
-#include "evaluation/checking/infeasibility.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/solution_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -107,8 +108,8 @@ class Check {
         }
     }
 
-    /// Prints the problems; returns how many records and missing answers failed.
-    std::size_t run() {
+    /// Prints the problems; returns whether every claim is proven and every scene has an answer.
+    bool run() {
         std::vector<std::vector<std::string>> violations;
         violations.reserve(records_.size());
         for (const SolutionRecord& record : records_) violations.push_back(check_lane_graph(record));
@@ -119,11 +120,15 @@ class Check {
         std::size_t failed = 0;
         for (std::size_t i = 0; i < records_.size(); ++i) {
             const SolutionRecord& record = records_[i];
+            bool is_unverified = false;
             if (violations[i].empty()) {
-                if (auto fault = check_proof(record)) violations[i].push_back(std::move(*fault));
+                if (auto fault = check_proof(record, is_unverified))
+                    violations[i].push_back(std::move(*fault));
             }
             for (const std::string& fault : violations[i]) fmt::print("{}: {}\n", record.scene, fault);
-            if (!violations[i].empty()) {
+            if (is_unverified) {
+                ++unverified_;
+            } else if (!violations[i].empty()) {
                 ++failed;
             } else {
                 ++(claims_nothing(record) ? silent : passed);
@@ -133,8 +138,10 @@ class Check {
         failed += count_missing();
         if (options_.exact) print_exact();
         if (silent > 0) fmt::print("{} claim nothing (stopped or error) and are not counted\n", silent);
+        if (proven_ > 0) fmt::print("{} claimed optima and infeasibilities are proven\n", proven_);
+        if (unverified_ > 0) fmt::print("{} unverified\n", unverified_);
         fmt::print("{} passed, {} failed\n", passed, failed);
-        return failed;
+        return failed + unverified_ == 0;
     }
 
   private:
@@ -221,8 +228,9 @@ class Check {
         if (exact_.too_large > 0) fmt::print("{} programs are too large for it\n", exact_.too_large);
     }
 
-    /// What is wrong with a bound or with a claim that there is no lane graph.
-    std::optional<std::string> check_proof(const SolutionRecord& record) {
+    /// What is wrong with a bound, an optimum or a claim that there is no lane graph, or why it is
+    /// unverified.
+    std::optional<std::string> check_proof(const SolutionRecord& record, bool& is_unverified) {
         const ConeSet& set = cone_set(record);
         if (record.bound && set.best) {
             const double best = set.best->objective;
@@ -231,34 +239,41 @@ class Check {
                                    record.solver, *record.bound, set.best->origin, best);
             }
         }
-        if (record.status != "infeasible") return std::nullopt;
-        if (set.best) {
+        if (record.status == "infeasible" && set.best) {
             return fmt::format("{} claims infeasible, but {} is a lane graph", record.solver,
                                set.best->origin);
         }
-        return check_infeasible(record, set.scene);
+        if (record.status != "infeasible" && record.status != "optimal") return std::nullopt;
+        return judge(record, set.scene, is_unverified);
     }
 
-    std::optional<std::string> check_infeasible(const SolutionRecord& record, const Scene& scene) const {
-        const InfeasibilityVerdict verdict =
-            judge_infeasible(scene, parameters_, record.solver, options_.time_limit_ms);
+    /// What an own search says against an optimum or a claim that there is no lane graph.
+    std::optional<std::string> judge(const SolutionRecord& record, const Scene& scene, bool& is_unverified) {
+        const bool is_optimum = record.status == "optimal";
+        const ClaimVerdict verdict = judge_bound(
+            scene, parameters_, is_optimum ? *record.objective : std::numeric_limits<double>::infinity(),
+            record.solver, options_.time_limit_ms);
+        const std::string claim =
+            is_optimum ? fmt::format("{} claims the optimum {:.6f}", record.solver, *record.objective)
+                       : record.solver + " claims infeasible";
         switch (verdict.kind) {
-            case InfeasibilityVerdict::Kind::confirmed:
+            case ClaimVerdict::Kind::proven:
+                ++proven_;
                 return std::nullopt;
-            case InfeasibilityVerdict::Kind::open:
+            case ClaimVerdict::Kind::unverified:
+                is_unverified = true;
                 return fmt::format(
-                    "{} claims infeasible, which could be neither confirmed nor refuted within "
-                    "{} ms",
-                    record.solver, options_.time_limit_ms);
-            case InfeasibilityVerdict::Kind::refuted:
+                    "unverified: {}, which could be neither confirmed nor refuted within {} ms", claim,
+                    options_.time_limit_ms);
+            case ClaimVerdict::Kind::wrong:
                 break;
         }
         std::vector<std::string> edges;
         for (const Edge& edge : verdict.witness->edges) {
             edges.push_back(fmt::format("[{}, {}]", scene.cones[edge.i].id, scene.cones[edge.j].id));
         }
-        return fmt::format("{} claims infeasible, but {} found the lane graph [{}]", record.solver,
-                           verdict.by, fmt::join(edges, ", "));
+        return fmt::format("{}, but {} found the lane graph [{}] with the objective {:.6f}", claim,
+                           verdict.by, fmt::join(edges, ", "), *verdict.objective);
     }
 
     /// Prints and counts the scenes that a solver of the file left out.
@@ -287,6 +302,8 @@ class Check {
     std::unordered_map<std::string, const AnnotatedScene*> scene_of_;
     std::map<std::pair<std::string, std::optional<std::size_t>>, ConeSet> cone_sets_;
     ExactTotals exact_;
+    std::size_t proven_ = 0;
+    std::size_t unverified_ = 0;
 };
 
 }  // namespace
@@ -294,15 +311,14 @@ class Check {
 void add_check_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "check",
-        "recomputes solutions independently of the solvers; exit code 1 on a failure.\n"
+        "recomputes solutions independently of the solvers; exit code 1 unless every claim is proven.\n"
         "Checked for each lane graph: every constraint, the objective, and that the bound is not above it. "
-        "`infeasible` passes if it is confirmed: by the checker's own search or by multipliers from the "
-        "scene "
-        "alone, or else by another exact solver. Bounds are not proven: `optimal` passes if the bound meets "
-        "the "
-        "objective and no lane graph of the file or of the ground truth is better; see `certify` for proofs "
-        "of bounds. A scene without an answer fails. `stopped` and `error` claim nothing and are counted "
-        "separately.");
+        "`optimal` and `infeasible` pass if they are proven within the time limit: by multipliers from the "
+        "scene alone, for `infeasible` by the checker's own search, for path-pair by a certificate, or else "
+        "by another exact solver. They fail if a lane graph of the file, of the ground truth or of that "
+        "solver "
+        "is better; otherwise they are unverified. The bound of `feasible` is not proven. A scene without an "
+        "answer fails. `stopped` and `error` claim nothing and are counted separately.");
     auto options = std::make_shared<CheckOptions>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();
@@ -315,7 +331,7 @@ void add_check_command(CLI::App& program) {
                      "does an objective off by more than 1e-9 of max(1, |objective|)");
     command.add_flag("--partial", options->partial, "scenes without an answer do not fail");
     command.callback([options] {
-        if (Check(*options).run() > 0) throw CLI::RuntimeError(1);
+        if (!Check(*options).run()) throw CLI::RuntimeError(1);
     });
 }
 

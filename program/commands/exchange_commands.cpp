@@ -1,4 +1,5 @@
 #include "conelane/invalid_input.hpp"
+#include "evaluation/checking/claim_verdict.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/program_files.hpp"
@@ -12,8 +13,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -116,20 +119,37 @@ struct ImportOptions {
     std::string solution;
     std::string solver = "import";
     std::string out;
+    double time_limit_ms = 10'000.0;  ///< of the proof
 };
 
 SolutionFile read_solution(const std::string& path, const BinaryProgram& program) {
     std::ifstream in(path);
     if (!in) throw InputError(path, 0, "", "cannot be read");
     try {
-        return read_solution_file(in, program);
+        SolutionFile solution = read_solution_file(in, program);
+        if (const std::string fault = fault_of(solution, program); !fault.empty())
+            throw InputError(path, 0, "", fault);
+        return solution;
     } catch (const InvalidInput& error) {
         throw InputError(path, 0, "", error.what());
     }
 }
 
-/// What the file proves about the scene. A point that is not a lane graph is an error; if it is the program's
-/// optimum, its objective is still a bound.
+/// The file's claim that the scene has no better lane graph, or none. Throws InputError if it is wrong.
+ClaimVerdict judge(const SceneProgram& program, const ImportOptions& options, double bound) {
+    ClaimVerdict verdict =
+        judge_bound(program.scene, program.parameters, bound, options.solver, options.time_limit_ms);
+    if (verdict.kind != ClaimVerdict::Kind::wrong) return verdict;
+    throw InputError(options.solution, 0, "",
+                     std::isinf(bound)
+                         ? fmt::format("says that there is no solution, {} found one of {:.9g}", verdict.by,
+                                       *verdict.objective)
+                         : fmt::format("claims that nothing is below {:.9g}, {} found a lane graph of {:.9g}",
+                                       bound, verdict.by, *verdict.objective));
+}
+
+/// What holds of the scene: an optimum or infeasibility only if it is proven here. A point that is not a lane
+/// graph is an error.
 SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& program,
                          const ImportOptions& options) {
     using Status = SolutionFile::Status;
@@ -139,28 +159,41 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
     record.formulation = options.source.formulation;
     record.nearest = options.source.nearest;
     record.parameters = tag_of(options.source.parameters.name, program.parameters);
-    record.bound = solution.bound;
-    if (!record.bound && solution.status == Status::optimal) record.bound = solution.objective;
+    record.status = "error";
+    if (solution.status == Status::infeasible) {
+        const ClaimVerdict verdict = judge(program, options, std::numeric_limits<double>::infinity());
+        if (verdict.kind == ClaimVerdict::Kind::proven) record.status = "infeasible";
+        record.message = verdict.kind == ClaimVerdict::Kind::proven ? "proven by " + verdict.by
+                                                                    : "infeasibility unverified";
+        return record;
+    }
     if (solution.point.empty()) {
-        record.status = solution.status == Status::infeasible ? "infeasible" : "error";
-        if (solution.status != Status::infeasible) record.message = "the file holds no solution";
-        if (solution.status == Status::infeasible) record.bound.reset();
+        record.message = "the file holds no solution";
         return record;
     }
     const LaneGraph graph = program.model.decode(solution.point);
     if (!is_feasible(program.problem, graph)) {
-        record.status = "error";
-        record.message = program.model.separate(solution.point).empty()
-                             ? "the solution violates a row of the program"
-                             : "the solution violates (5) or the pairing, which are not in the file";
+        record.message = "the solution violates (5) or the pairing, which are not in the file";
         return record;
     }
-    record.status = solution.status == Status::optimal ? "optimal" : "feasible";
+    record.status = "feasible";
     record.objective = objective(program.problem, graph);
-    // The file's objective is rounded.
-    if (record.bound) record.bound = std::min(*record.bound, *record.objective);
     for (const Edge& edge : graph.edges) {
         record.edges.emplace_back(program.scene.cones[edge.i].id, program.scene.cones[edge.j].id);
+    }
+    const bool is_claimed_optimal = solution.status == Status::optimal;
+    if (!is_claimed_optimal && !solution.bound) return record;
+    const double bound =
+        is_claimed_optimal ? *record.objective : std::min(*solution.bound, *record.objective);
+    const ClaimVerdict verdict = judge(program, options, bound);
+    const std::string claim = is_claimed_optimal ? "optimum" : fmt::format("bound {:.9g}", bound);
+    if (verdict.kind == ClaimVerdict::Kind::proven) {
+        if (is_claimed_optimal) record.status = "optimal";
+        record.bound = bound;
+        record.message = fmt::format("{} proven by {}", claim, verdict.by);
+    } else {
+        record.message = fmt::format("{} unverified: {} did not decide within {} ms", claim, verdict.by,
+                                     options.time_limit_ms);
     }
     return record;
 }
@@ -185,11 +218,14 @@ void add_exchange_commands(CLI::App& program) {
     add_output_option(exporting, "--out", exports->out, "*.mps or *.lp")->required();
     exporting.callback([exports] { export_program(*exports); });
 
-    CLI::App& importing =
-        *program.add_subcommand("import-solution",
-                                "reads another program's solution of an exported file, for `conelane check`. "
-                                "The options must be those of the export. A solution with a cycle or against "
-                                "the pairing is an error: only --all-rows puts those rows into the file");
+    CLI::App& importing = *program.add_subcommand(
+        "import-solution",
+        "reads another program's solution of an exported file, for `conelane check`. "
+        "The options must be those of the export. A file whose point, objective or bound "
+        "contradict each other or the program is refused, and so is an optimum that an "
+        "own search within the time limit refutes; one that it does not prove is "
+        "unverified and counts as feasible. A solution with a cycle or against "
+        "the pairing is an error: only --all-rows puts those rows into the file");
     auto imports = std::make_shared<ImportOptions>();
     add_program_options(importing, imports->source);
     importing
@@ -198,6 +234,7 @@ void add_exchange_commands(CLI::App& program) {
         ->required();
     importing.add_option("--solver", imports->solver, "name of the solver, for the records")
         ->capture_default_str();
+    add_time_limit_option(importing, imports->time_limit_ms);
     add_output_option(importing, "--out", imports->out, "*.solutions.jsonl")->required();
     importing.callback([imports] { import_solution(*imports); });
 }

@@ -44,18 +44,6 @@ TEST_F(Program, SolveCountsTheAnswersByStatus) {
               "2 scenes: 2 infeasible, in e.solutions.jsonl\n");
 }
 
-TEST_F(Program, AnImportedSolutionNamesItsSolver) {
-    make_scenes("--fp 0.2");
-    const std::string scenes = text_of(path("s.scenes.jsonl"));
-    const std::string id = nlohmann::json::parse(scenes.substr(0, scenes.find('\n')))["id"];
-    file_with("Infeasible - objective value 0.00000000\n", "x.sol");
-    const std::string import = "import-solution --scenes s.scenes.jsonl --sol x.sol --nearest 12 --id " + id;
-    ASSERT_EQ(run(import + " --solver highs --out x.solutions.jsonl").output, "infeasible\n");
-    EXPECT_THAT(text_of(path("x.solutions.jsonl")), HasSubstr(R"("solver":"highs")"));
-    ASSERT_EQ(run(import + " --out y.solutions.jsonl").exit_code, 0);
-    EXPECT_THAT(text_of(path("y.solutions.jsonl")), HasSubstr(R"("solver":"import")"));
-}
-
 /// One line for each claim of any solver; the scene has ten cones in two rows, or too few.
 class Claims : public Program {
   protected:
@@ -113,11 +101,36 @@ TEST_F(Claims, AProvenInfeasiblePasses) {
     EXPECT_THAT(outcome.output, HasSubstr("2 passed, 0 failed"));
 }
 
-TEST_F(Claims, AnInfeasibleThatNothingConfirmsFails) {
+TEST_F(Claims, WhatNothingProvesIsUnverified) {
     file_with(scene("a", 30).dump() + "\n", "c.scenes.jsonl");
-    const Outcome outcome = check(infeasible("a", "cbc"), "--time-limit 1e-6");
-    EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
-    EXPECT_THAT(outcome.output, HasSubstr("neither confirmed nor refuted"));
+    ASSERT_EQ(run("solve --scenes c.scenes.jsonl --out best.solutions.jsonl").exit_code, 0);
+    const std::string optimum = text_of(path("best.solutions.jsonl"));
+    for (const std::string& claim : {infeasible("a", "cbc"), optimum}) {
+        const Outcome outcome = check(claim, "--time-limit 1e-6");
+        EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+        EXPECT_THAT(outcome.output, HasSubstr("neither confirmed nor refuted"));
+        EXPECT_THAT(outcome.output, HasSubstr("1 unverified\n0 passed, 0 failed"));
+    }
+    const Outcome proven = check(optimum);
+    EXPECT_EQ(proven.exit_code, 0) << proven.output;
+    EXPECT_THAT(proven.output,
+                HasSubstr("1 claimed optima and infeasibilities are proven\n1 passed, 0 failed"));
+}
+
+/// A lane graph that is no optimum, claimed to be one with a bound to match: no other line of the file
+/// refutes it.
+TEST_F(Claims, AMadeUpOptimumIsWrong) {
+    file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
+    ASSERT_EQ(run("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl").exit_code, 0);
+    nlohmann::json some = nlohmann::json::parse(text_of(path("some.solutions.jsonl")));
+    some.erase("nearest");
+    for (const char* const claimant : {"cbc", "path-pair", "stranger"}) {
+        some["solver"] = claimant;
+        const Outcome outcome = check(some.dump() + "\n");
+        EXPECT_EQ(outcome.exit_code, 1);
+        EXPECT_THAT(outcome.output, HasSubstr("lane: " + std::string(claimant) + " claims the optimum"));
+        EXPECT_THAT(outcome.output, HasSubstr("0 passed, 1 failed"));
+    }
 }
 
 TEST_F(Claims, AMissingAnswerFails) {

@@ -1,10 +1,11 @@
-// The checker's own search against the exact solvers, and its verdicts on claims of infeasibility.
+// The checker's own search against the exact solvers, and verdicts on claims of optima and of infeasibility.
 
 #include "evaluation/checking/lane_graph_search.hpp"
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/checking/infeasibility.hpp"
+#include "conelane/solve_scene.hpp"
+#include "evaluation/checking/claim_verdict.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -89,30 +90,61 @@ TEST(LaneGraphSearch, ReportsThatTheTimeRanOut) {
     EXPECT_FALSE(stopped.witness);
 }
 
+constexpr double kNone = std::numeric_limits<double>::infinity();  ///< the claim that there is no lane graph
+
 /// The near endpoints are in the lane only.
 TEST(Infeasibility, IsJudgedWithoutTheClaimant) {
-    using Kind = InfeasibilityVerdict::Kind;
+    using Kind = ClaimVerdict::Kind;
     const Scene straight = straight_scene().scene;
     for (const char* claimant : {"cbc", "path-pair", "exhaustive"}) {
-        const InfeasibilityVerdict refuted = judge_infeasible(straight, {}, claimant, kNoLimit);
-        EXPECT_EQ(refuted.kind, Kind::refuted);
-        EXPECT_NE(refuted.by, claimant);
-        ASSERT_TRUE(refuted.witness);
-        EXPECT_TRUE(check(straight, {}, *refuted.witness).violations.empty());
+        const ClaimVerdict wrong = judge_bound(straight, {}, kNone, claimant, kNoLimit);
+        EXPECT_EQ(wrong.kind, Kind::wrong);
+        EXPECT_NE(wrong.by, claimant);
+        ASSERT_TRUE(wrong.witness);
+        EXPECT_TRUE(check(straight, {}, *wrong.witness).violations.empty());
         Scene passed = straight;
         passed.pose.position.x() = 200.0;
-        EXPECT_EQ(judge_infeasible(passed, {}, claimant, kNoLimit).kind, Kind::confirmed);
+        EXPECT_EQ(judge_bound(passed, {}, kNone, claimant, kNoLimit).kind, Kind::proven);
     }
-    EXPECT_EQ(judge_infeasible(straight, {}, "cbc", 0.0).kind, Kind::open);
+    EXPECT_EQ(judge_bound(straight, {}, kNone, "cbc", 0.0).kind, Kind::unverified);
 }
 
 /// Without time, neither the checker's search nor multipliers decide, so another solver is asked.
 TEST(Infeasibility, AsksAnotherSolverThanTheClaimant) {
     const Scene scene = tests::random_scene(3, 60);
-    EXPECT_EQ(judge_infeasible(scene, {}, "cbc", 0.0).by, "path-pair");
-    const std::string other = judge_infeasible(scene, {}, "path-pair", 0.0).by;
+    EXPECT_EQ(judge_bound(scene, {}, kNone, "cbc", 0.0).by, "path-pair");
+    const std::string other = judge_bound(scene, {}, kNone, "path-pair", 0.0).by;
     EXPECT_NE(other, "path-pair");
     EXPECT_NE(other, "");
+}
+
+/// Claims about the optimum of random scenes: the true one, one that is too low and one that no lane graph
+/// has.
+TEST(Optimality, IsProvenOrRefuted) {
+    using Kind = ClaimVerdict::Kind;
+    int feasible = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Scene scene = tests::random_scene(seed, 14);
+        RldParameters parameters;
+        parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+        const auto solver = make_path_pair_solver();
+        const RldReport exact = solve_scene(*solver, scene, parameters, {}).report;
+        if (exact.status != SolveStatus::optimal) continue;
+        ++feasible;
+        for (const char* const claimant : {"cbc", "path-pair", "stranger"}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << claimant);
+            const auto judged = [&](double bound) {
+                return judge_bound(scene, parameters, bound, claimant, kNoLimit);
+            };
+            EXPECT_EQ(judged(*exact.objective).kind, Kind::proven);
+            EXPECT_EQ(judged(*exact.objective - 0.1).kind, Kind::proven) << "a bound below it holds too";
+            const ClaimVerdict wrong = judged(*exact.objective + 0.1);
+            EXPECT_EQ(wrong.kind, Kind::wrong);
+            EXPECT_NEAR(wrong.objective.value(), *exact.objective, 1e-6);
+        }
+    }
+    EXPECT_GT(feasible, 5);
+    EXPECT_EQ(judge_bound(tests::random_scene(3, 60), {}, 0.0, "cbc", 0.0).kind, Kind::unverified);
 }
 
 }  // namespace

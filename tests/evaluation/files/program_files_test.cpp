@@ -112,6 +112,13 @@ TEST(SolutionFiles, ByCbc) {
     EXPECT_EQ(*solution.objective, -2.0);
     EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
     EXPECT_EQ(read("Infeasible - objective value 0\n").status, SolutionFile::Status::infeasible);
+    // With `printingOptions all`, rows come first.
+    EXPECT_EQ(read("Optimal - objective value -2\n 0 one_of 1 0\n 1 close_0 0.5 0\n 0 x 0 1\n 1 y_1 1 -2\n"
+                   " 2 z_1_2 0.5 0\n")
+                  .point,
+              solution.point);
+    EXPECT_EQ(read("Optimal (within gap tolerance) - objective value -2\n 1 y_1 1 -2\n").status,
+              SolutionFile::Status::feasible);
 }
 
 TEST(SolutionFiles, ByGlpsol) {
@@ -220,6 +227,13 @@ TEST(SolutionFiles, BadOnesNameTheirLine) {
     EXPECT_EQ(complaint("=obj= -2\ny_1 1\ny_1 1\n"), "line 3: column y_1 is there twice");
     EXPECT_EQ(complaint("=obj= -2\ny_1 1e999\n"), "line 2: must be NAME VALUE");
     EXPECT_EQ(complaint("=obj= nothing\n"), "line 1: must be =obj= VALUE");
+    EXPECT_EQ(complaint("=bound= 1\nx 1\n=bound= 2\n"), "line 3: =bound= is there twice");
+    EXPECT_EQ(complaint("Optimal - objective value -2\n 1 y_1 1 -2\n=obj= -3\n"),
+              "line 4: =obj= says -3, the head of the solution -2");
+    EXPECT_EQ(complaint("Stopped on time - objective value -2\n 1 y_1 1 -2\n=status= optimal\n"),
+              "line 4: =status= says optimal, the head of the solution does not");
+    EXPECT_EQ(complaint("Optimal - objective value nan\n 1 y_1 1 -2\n"),
+              "line 1: 'objective value' must be followed by a finite number");
     EXPECT_EQ(complaint("=objective= 3\n"), "line 1: is not a line of a solution: =objective=");
     EXPECT_EQ(complaint("=status= optimal\n"), "line 2: there is no point with this status");
     EXPECT_EQ(complaint("=status= good\nx 1\n"),
@@ -229,6 +243,22 @@ TEST(SolutionFiles, BadOnesNameTheirLine) {
     EXPECT_EQ(complaint("solution status: optimal\nx 1\n"), "line 2: must be 'objective value: VALUE'");
     EXPECT_EQ(complaint("<?xml version = \"1.0\"?>\n"),
               "line 1: is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB .sol");
+}
+
+TEST(SolutionFiles, FaultsOfAPointNameColumnOrRow) {
+    const auto fault = [](const std::string& text) { return fault_of(read(text), small_program()); };
+    const std::string optimum = "=obj= -2\n=status= optimal\ny_1 1\nz_1_2 0.5\n";
+    EXPECT_EQ(fault(optimum), "");
+    EXPECT_EQ(fault(optimum + "=bound= -2\n"), "");
+    EXPECT_EQ(fault("=status= unknown\n=bound= 5\n"), "");
+    EXPECT_EQ(fault("y_1 0.99999\nz_1_2 0.5\n=obj= -1.99998\n"), "") << "solvers round";
+    EXPECT_EQ(fault("y_1 0.6\nz_1_2 0.5\n"), "column y_1 is 0.6, not integral");
+    EXPECT_EQ(fault("y_1 3\n"), "column y_1 is 3, outside 0 to 1");
+    EXPECT_EQ(fault("z_1_2 0.8\n"), "column z_1_2 is 0.8, outside 0 to 0.75");
+    EXPECT_EQ(fault("y_1 1\n"), "row close_0 of the program is 1, outside 0 to 0.5");
+    EXPECT_EQ(fault("x 1\ny_1 1\nz_1_2 0.5\n"), "row one_of of the program is 2, outside -1e+300 to 1");
+    EXPECT_EQ(fault("=obj= -2.001\ny_1 1\nz_1_2 0.5\n"), "it claims the objective -2.001, its point has -2");
+    EXPECT_EQ(fault(optimum + "=bound= -1.9\n"), "it claims the bound -1.9, its point has the objective -2");
 }
 
 struct RoundTrip {
@@ -276,6 +306,7 @@ TEST_P(RoundTrips, OtherProgramsFindTheSameOptimum) {
             ASSERT_EQ(std::system((command + " >/dev/null 2>&1").c_str()), 0) << command;
             std::ifstream in(solution_file);
             const SolutionFile theirs = read_solution_file(in, model.program());
+            EXPECT_EQ(fault_of(theirs, model.program()), "");
             if (ours.status != SolveStatus::optimal) {
                 EXPECT_EQ(ours.status, SolveStatus::infeasible);
                 EXPECT_NE(theirs.status, SolutionFile::Status::optimal);

@@ -12,6 +12,7 @@ SCRIPTS = os.path.join(ROOT, "experiments", "instances")
 sys.dont_write_bytecode = True
 sys.path.insert(0, SCRIPTS)
 
+import check_solutions  # noqa: E402
 import mps  # noqa: E402
 
 PROGRAM_TEXT = """NAME two FREE
@@ -70,7 +71,7 @@ class Scripts(unittest.TestCase):
         for program in there:
             check = self.checked(program, os.path.join(ROOT, "experiments", "adapters", commands[program]), "--formulation", "tight")
             self.assertEqual(check.returncode, 0, check.stdout)
-            self.assertRegex(check.stdout, r"easy +tight +2 +2 +0 +0 +0 +0 ")
+            self.assertRegex(check.stdout, r"easy +tight +2 +2 +0 +0 +0 +0 +0 ")
 
     def test_wrong_answers_are_found(self):
         for name, command, said in (
@@ -81,6 +82,32 @@ class Scripts(unittest.TestCase):
             check = self.checked(name, command, "--formulation", "tight")
             self.assertIn(said, check.stdout)
             self.assertEqual(check.returncode, 1, check.stdout)
+
+    def test_a_claim_that_the_library_does_not_know_is_unverified(self):
+        path = os.path.join(self.folder, "two.mps")
+        with open(path, "w", encoding="ascii") as stream:
+            stream.write(PROGRAM_TEXT)
+        program = mps.read_mps(path)
+        optimum = mps.Solution("optimal", -2.0, None, {"y": 1.0})
+        for known, verdict in (({}, "unverified"), ({"=best=": -2.0}, "unverified"), ({"=best=": -1.0}, "unverified"),
+                               ({"=best=": -1.0, "=bestdual=": -2.5}, "unverified"), ({"=best=": -2.0, "=bestdual=": -2.0}, "proven"),
+                               ({"=opt=": -2.0}, "proven"), ({"=best=": -2.5}, "wrong"), ({"=opt=": -1.0}, "wrong"),
+                               ({"=best=": -1.0, "=bestdual=": -1.5}, "wrong"), ({"=inf=": None}, "wrong")):
+            with self.subTest(known):
+                self.assertEqual(check_solutions.judged(program, optimum, known)[0], verdict)
+        self.assertEqual(check_solutions.judged(program, mps.Solution("infeasible"), {})[0], "unverified")
+        for claimed in (mps.Solution("optimal", -3.0, None, {"y": 1.0}), mps.Solution("optimal", -2.0, -1.0, {"y": 1.0}),
+                        mps.Solution("optimal", -2.0, None, {"y": 3.0}), mps.Solution("optimal", -2.0, None, {"y": 0.6})):
+            self.assertEqual(check_solutions.judged(program, claimed, {"=opt=": -2.0})[0], "wrong")
+
+    def test_contradictions_in_a_solution_cannot_be_read(self):
+        head = "Optimal - objective value -2\n 1 y 1 -2\n"
+        for text in (head + " 1 y 1 -2\n", head + "=obj= -3\n", head.replace("Optimal", "Stopped on time") + "=status= optimal\n"):
+            path = os.path.join(self.folder, "a.sol")
+            with open(path, "w", encoding="ascii") as stream:
+                stream.write(text)
+            with self.assertRaises(ValueError):
+                mps.read_solution(path, ["x", "y"])
 
     def test_no_point_and_no_claim_are_not_wrong(self):
         self.assertEqual(self.checked("no_point", "echo =status= unknown > {sol}").returncode, 0)
@@ -108,6 +135,8 @@ class Scripts(unittest.TestCase):
         texts = {
             "cbc": "Optimal - objective value -2.00000000\n      1 y                      1                      -2\n",
             "cbc stopped": "Stopped on time - objective value -2.0\n** 1 y 1 -2\n",
+            "cbc within a gap": "Optimal (within gap tolerance) - objective value -2.0\n 1 y 1 -2\n",
+            "cbc with rows": "Stopped on time - objective value -2.0\n 0 both 1 0\n 1 y 1 -2\n",
             "glpsol": "c Problem: two\ns mip 2 2 o -2\ni 1 1\nj 1 0\nj 2 1\ne o f\n",
             "highs": "Model status\nOptimal\n\n# Primal solution values\nFeasible\nObjective -2\n# Columns 2\nx 0\ny 1\n# Rows 1\nboth 1\n"
                      "\n# Dual solution values\nNone\n",
@@ -120,7 +149,7 @@ class Scripts(unittest.TestCase):
                 path = os.path.join(self.folder, "a.sol")
                 with open(path, "w", encoding="ascii") as stream:
                     stream.write(text)
-                solution = mps.read_solution(path, ["x", "y"])
+                solution = mps.read_solution(path, ["x", "y"], {"both", "one"})
                 self.assertEqual(solution.objective, -2.0)
                 self.assertEqual({column: value for column, value in solution.values.items() if value}, {"y": 1.0})
                 self.assertEqual(solution.status, "optimal" if name in ("cbc", "glpsol", "highs", "scip") else "feasible")
