@@ -8,6 +8,7 @@
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -16,11 +17,14 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 namespace {
@@ -81,6 +85,56 @@ std::string version() {
                        origin.compiler, solvers);
 }
 
+/// Adds the commands by what they are for, in the order of the help; those without a group are not in it.
+void add_commands(CLI::App& program) {
+    using namespace conelane::experiments;
+    struct Group {
+        const char* name;
+        std::vector<void (*)(CLI::App&)> commands;
+    };
+    const std::vector<Group> groups{
+        {"Detect", {add_scenes_command, add_detect_command, add_methods_command, add_plot_command}},
+        {"Compare",
+         {add_compare_command, add_score_command, add_report_command, add_study_command,
+          add_cross_validate_command}},
+        {"Solve",
+         {add_solve_command, add_check_command, add_certify_command, add_export_command,
+          add_instances_command}},
+        {"Learn", {add_train_command, add_tune_command}},
+        {"Drive", {add_drive_command, add_race_command}},
+        {"", {add_echo_command}}};
+    for (const Group& group : groups) {
+        for (const auto add : group.commands) {
+            add(program);
+            program.get_subcommands({}).back()->group(group.name);
+        }
+    }
+}
+
+/// A command that has become a part of another one. Its name still works, and on a terminal it says the new
+/// one.
+struct OldName {
+    std::string_view name;
+    std::vector<const char*> words;
+};
+
+/// The words of the command line, an old name replaced by the new words.
+std::vector<const char*> current_words(std::span<char* const> arguments) {
+    static const std::vector<OldName> kOldNames{
+        {"sweep", {"compare", "--by-size"}}, {"merge", {"compare", "--merge"}},
+        {"tune-method", {"tune"}},           {"solvers", {"methods", "--solvers"}},
+        {"import-solution", {"export"}},     {"cross-check", {"study", "cross-check"}}};
+    std::vector<const char*> words(arguments.begin(), arguments.end());
+    if (words.size() < 2) return words;
+    const auto old = std::ranges::find(kOldNames, std::string_view(words[1]), &OldName::name);
+    if (old == kOldNames.end()) return words;
+    if (isatty(STDERR_FILENO) != 0)
+        fmt::print(stderr, "conelane: {} is now {}\n", old->name, fmt::join(old->words, " "));
+    words.erase(words.begin() + 1);
+    words.insert(words.begin() + 1, old->words.begin(), old->words.end());
+    return words;
+}
+
 int run(int argument_count, char** arguments) {
     namespace experiments = conelane::experiments;
     CLI::App program("Finds the lane between cones, exactly and in real time, and compares methods that do.",
@@ -88,39 +142,17 @@ int run(int argument_count, char** arguments) {
     program.formatter(std::make_shared<experiments::HelpFormatter>());  // its commands inherit it
     program.set_version_flag("--version", version());
     program.require_subcommand(0, 1);  // a missing command is reported below, after a misspelt one
-    experiments::add_compare_command(program);
-    experiments::add_cross_validate_command(program);
-    experiments::add_race_command(program);
-    experiments::add_report_command(program);
-    experiments::add_plot_command(program);
-    experiments::add_sweep_command(program);
-    experiments::add_merge_command(program);
-    experiments::add_tune_command(program);
-    experiments::add_tune_method_command(program);
-    experiments::add_scenes_command(program);
-    experiments::add_detect_command(program);
-    experiments::add_echo_command(program);
-    experiments::add_methods_command(program);
-    experiments::add_drive_command(program);
-    experiments::add_score_command(program);
-    experiments::add_solve_command(program);
-    experiments::add_solvers_command(program);
-    experiments::add_check_command(program);
-    experiments::add_cross_check_command(program);
-    experiments::add_certify_command(program);
-    experiments::add_exchange_commands(program);
-    experiments::add_instances_command(program);
-    experiments::add_study_command(program);
-    experiments::add_train_command(program);
+    add_commands(program);
     refuse_empty_values(program);
     // All options have been read, and no command has begun.
     program.parse_complete_callback([&program] {
         for (CLI::App* command : program.get_subcommands()) experiments::refuse_lost_inputs(*command);
     });
+    const std::vector<const char*> words =
+        current_words(std::span(arguments, static_cast<std::size_t>(argument_count)));
     try {
-        experiments::refuse_misread_words(
-            program, std::span(arguments, static_cast<std::size_t>(argument_count)).subspan(1));
-        program.parse(argument_count, arguments);
+        experiments::refuse_misread_words(program, std::span(words).subspan(1));
+        program.parse(static_cast<int>(words.size()), words.data());
     } catch (const CLI::Success& help) {
         errno = 0;
         const int exit_code = program.exit(help);

@@ -48,7 +48,7 @@ bool takes_positionals(const CLI::App& app) {
 
 }  // namespace
 
-void refuse_misread_words(CLI::App& program, std::span<char* const> arguments) {
+void refuse_misread_words(CLI::App& program, std::span<const char* const> arguments) {
     CLI::App* app = &program;
     const CLI::Option* option = nullptr;  // the option that was named last
     bool names_a_command = true;          // whether the next word, directly behind a command, names a command

@@ -4,7 +4,6 @@
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
 #include "experiments/studies/deadlines.hpp"
-#include "experiments/studies/differential.hpp"
 #include "experiments/studies/features.hpp"
 #include "experiments/studies/formulations.hpp"
 #include "experiments/studies/front_beam.hpp"
@@ -22,7 +21,6 @@ std::vector<std::unique_ptr<Study>> make_studies() {
     studies.push_back(make_backends_study());
     studies.push_back(make_anytime_study());
     studies.push_back(make_growth_study());
-    studies.push_back(make_differential_study());
     studies.push_back(make_features_study());
     studies.push_back(make_formulations_study());
     studies.push_back(make_relaxations_study());

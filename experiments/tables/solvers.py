@@ -12,8 +12,6 @@ RATES = [0.0, 0.1, 0.3, 0.5]
 LANES = ["beam", "candidate", "choice", "beside"]
 SUCCESSES = {"ground_truth", "near_ground_truth", "too_short", "diverging_from_20"}
 GAPS = [("none", 1e-6), ("to 1 %", 0.01), ("to 10 %", 0.1), ("above", float("inf"))]
-AGREEMENTS = {"same optimum": "the same optimum", "both infeasible": "no lane graph by both", "undecided": "undecided within 10 s",
-              "differ": "differ", "refused": "refused by the checker"}
 DENSITIES = [4, 5, 6, 7, 10]
 EDGES = [100, 200, 300, 500, 1000]
 BEAM_KEYS = ["beam", "drop", "scenes", "best_score", "first_usable", "usable", "any_usable", "iou", "median_ms", "p95_ms", "worst_ms"]
@@ -113,10 +111,6 @@ def anytime_rows(lines):
         gaps = [line["gap"] for line in unproven if "gap" in line]
         rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": sum(map(close, unproven)), "gap": rounded(statistics.median(gaps)) if gaps else None})
     return rows
-
-
-def differential_row(lines):
-    return {"table": "differential", "cases": len(lines)} | {kind: sum(line["agreement"] == kind for line in lines) for kind in AGREEMENTS}
 
 
 def certificate_row(text):
@@ -228,7 +222,6 @@ def collect(folder):
         stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in keys} for line in lines(name)]
     stored["rows"] += growth_rows(lines("growth"))
     stored["rows"] += anytime_rows(lines("anytime"))
-    stored["rows"].append(differential_row(lines("differential")))
     with open(os.path.join(runs, "verified.txt"), encoding="utf-8") as stream:
         stored["rows"].append(certificate_row(stream.read()))
     stored["rows"] += [{"table": "beam"} | {key: rounded(value) for key, value in line.items() if key in BEAM_KEYS} for line in lines("front_beam")]
@@ -311,10 +304,6 @@ def anytime_table(rows):
                    f"{row['open_close']} of {row['open']}", "–" if row["gap"] is None else f"{percent(row['gap'], 0)} %"] for row in rows])
 
 
-def differential_table(rows):
-    return table(["cases", *AGREEMENTS.values()], [[str(row["cases"]), *(str(row[kind]) for kind in AGREEMENTS)] for row in rows])
-
-
 def certificate_table(rows):
     return table(["claimed and verified", "scenes"],
                  [[label, str(row[key])] for row in rows for key, label in
@@ -382,7 +371,7 @@ def gap_table(rows):
 TABLES = {"solvers": ("backends", solver_table), "solvers by size": ("sizes", size_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
           "growth of path-pair": ("growth", growth_table), "growth by density": ("growth by density", lambda rows: class_table(rows, "density")),
           "growth by edges": ("growth by edges", lambda rows: class_table(rows, "edges")), "within a limit": ("anytime", anytime_table),
-          "against CBC": ("differential", differential_table), "certificates": ("certificates", certificate_table), "width of the beam": ("beam", beam_table),
+          "certificates": ("certificates", certificate_table), "width of the beam": ("beam", beam_table),
           "proven by path-pair": ("proven", proven_table),
           "confidence and colour": ("confidence", confidence_table), "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
           "exactness by gap": ("gaps", gap_table)}

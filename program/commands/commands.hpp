@@ -10,12 +10,11 @@ void add_scenes_command(CLI::App& program);
 void add_methods_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
 void add_echo_command(CLI::App& program);
-void add_solvers_command(CLI::App& program);
 void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
-void add_cross_check_command(CLI::App& program);
+void add_cross_check_command(CLI::App& study);  ///< a sub-command of `study`
 void add_certify_command(CLI::App& program);
-void add_exchange_commands(CLI::App& program);  ///< export, import-solution
+void add_export_command(CLI::App& program);
 void add_instances_command(CLI::App& program);
 void add_drive_command(CLI::App& program);
 void add_study_command(CLI::App& program);
@@ -25,13 +24,10 @@ void add_cross_validate_command(CLI::App& program);
 void add_race_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_plot_command(CLI::App& program);
-void add_sweep_command(CLI::App& program);
-void add_merge_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 /// `front` and `rld` below it.
 void add_train_front_command(CLI::App& train_command);
 void add_train_rld_command(CLI::App& train_command);
 void add_tune_command(CLI::App& program);
-void add_tune_method_command(CLI::App& program);
 
 }  // namespace conelane::experiments

@@ -21,12 +21,15 @@
 namespace conelane::experiments {
 namespace {
 
-/// What `compare` and `sweep` have in common.
 struct CompareOptions {
     ComparisonOptions comparison;
-    std::vector<std::string> detectors;
+    std::vector<std::string> detectors{"rld-cbc", "rld-pair",  "rld-shape",     "front",
+                                       "clc",     "clc-paper", "delaunay-beam", "astar-lane"};
     ParameterSource parameters;
     std::string directory;
+    std::optional<std::size_t> nearest;
+    std::vector<std::size_t> sizes{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60};
+    std::vector<std::filesystem::path> shards;
 };
 
 Shard parse_shard(const std::string& text) {
@@ -41,12 +44,7 @@ Shard parse_shard(const std::string& text) {
     throw CLI::ValidationError("--shard", "'" + text + "' is not I/N with 0 <= I < N");
 }
 
-void add_overwrite_flag(CLI::App& command, bool& overwrite) {
-    command.add_flag("--overwrite", overwrite,
-                     "replace another comparison in that directory; without it, the command refuses to");
-}
-
-void add_shared_options(CLI::App& command, CompareOptions& options) {
+void add_options(CLI::App& command, CompareOptions& options) {
     ComparisonOptions& comparison = options.comparison;
     command.add_option("--tracks", comparison.tracks,
                        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
@@ -73,7 +71,54 @@ void add_shared_options(CLI::App& command, CompareOptions& options) {
         .add_option("--out", options.directory,
                     "directory of the results; a run that was stopped there resumes")
         ->required();
-    add_overwrite_flag(command, comparison.overwrite);
+    command.add_flag("--overwrite", comparison.overwrite,
+                     "replace another comparison in that directory; without it, the command refuses to");
+    command.add_flag("--full",
+                     "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m; with the time limit of a "
+                     "car, 50 ms");
+    CLI::Option& by_size = *command.add_flag(
+        "--by-size",
+        "each method among each of --sizes nearest cones; by default 20 % false positives, a pose "
+        "every 13.2 m, condition paper, and the methods rld-cbc, rld-pair, rld-shape and clc");
+    add_nearest_option(command, options.nearest, "the same cone-set size for every method");
+    command.get_option("--nearest")->excludes(&by_size);
+    command.add_option("--sizes", options.sizes, "cone-set sizes of --by-size")
+        ->needs(&by_size)
+        ->delimiter(',')
+        ->check(whole_number(1, kMaxCones))
+        ->capture_default_str();
+    CLI::Option& merging =
+        *command.add_flag("--merge", "join the shards of one comparison, named in any order");
+    command.add_option("shards", options.shards, "directories of all shards, for --merge")->needs(&merging);
+}
+
+/// The defaults that depend on other options.
+void choose_defaults(const CLI::App& command, CompareOptions& options) {
+    const auto is_given = [&](const std::string& name) { return command.count(name) > 0; };
+    SceneOptions& scenes = options.comparison.scenes;
+    if (is_given("--full")) {
+        if (!is_given("--every")) scenes.every_m = 1.1;
+        if (!is_given("--range")) scenes.ranges_m = {30.0, 50.0};
+        if (!is_given("--time-limit")) options.comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
+    }
+    if (is_given("--by-size")) {
+        if (!is_given("--methods")) options.detectors = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
+        if (!is_given("--fp")) scenes.false_positive_rates = {0.2};
+        if (!is_given("--every")) scenes.every_m = 13.2;
+    }
+    // Disturbances that are given one by one form a condition of their own.
+    const bool is_disturbed =
+        is_given("--noise") || is_given("--pose-noise") || is_given("--miss") || is_given("--persist");
+    if ((is_disturbed || is_given("--by-size")) && !is_given("--condition")) scenes.conditions.clear();
+}
+
+void merge_and_print(const CompareOptions& options) {
+    require_own_page(options.directory);
+    const ComparisonOutcome outcome = merge(options.shards, options.directory, options.comparison.overwrite);
+    fmt::print("{}", outcome.summary);
+    say_wide_table(options.directory);
+    write_page(options.directory);
+    report_errors(outcome.errors);
 }
 
 void compare_and_print(CompareOptions& options) {
@@ -102,76 +147,25 @@ void compare_and_print(CompareOptions& options) {
 void add_compare_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("compare", "methods on the same scenes, scored and tabled");
     auto options = std::make_shared<CompareOptions>();
-    auto nearest = std::make_shared<std::optional<std::size_t>>();
-    auto full = std::make_shared<bool>(false);
-    options->detectors = {"rld-cbc", "rld-pair",  "rld-shape",     "front",
-                          "clc",     "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0};
     scenes.every_m = 22.0;
     scenes.conditions = {"paper", "car"};
-    add_shared_options(command, *options);
-    command.add_flag("--full", *full,
-                     "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m; with the time limit of a "
-                     "car, 50 ms");
-    add_nearest_option(command, *nearest, "the same cone-set size for every method");
-    command.callback([options, nearest, full, &command] {
-        SceneOptions& chosen = options->comparison.scenes;
-        if (*full && command.count("--every") == 0) chosen.every_m = 1.1;
-        if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
-        if (*full && command.count("--time-limit") == 0)
-            options->comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
-        // Disturbances that are given one by one form a condition of their own.
-        const bool is_disturbed = command.count("--noise") + command.count("--pose-noise") +
-                                      command.count("--miss") + command.count("--persist") >
-                                  0;
-        if (is_disturbed && command.count("--condition") == 0) chosen.conditions.clear();
-        for (const std::string& detector : split_detectors(options->detectors))
-            options->comparison.detectors.push_back(parse_compared_detector(detector, *nearest));
-        compare_and_print(*options);
-    });
-}
-
-void add_sweep_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("sweep", "a comparison of methods over cone-set sizes");
-    auto options = std::make_shared<CompareOptions>();
-    auto sizes = std::make_shared<std::vector<std::size_t>>(
-        std::vector<std::size_t>{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60});
-    options->detectors = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
-    SceneOptions& scenes = options->comparison.scenes;
-    scenes.false_positive_rates = {0.2};
-    scenes.ranges_m = {30.0};
-    scenes.every_m = 13.2;
-    add_shared_options(command, *options);
-    command.add_option("--sizes", *sizes, "cone-set sizes")
-        ->delimiter(',')
-        ->check(whole_number(1, kMaxCones))
-        ->capture_default_str();
-    command.callback([options, sizes] {
+    add_options(command, *options);
+    command.callback([options, &command] {
+        if (command.count("--merge") > 0) {
+            if (options->shards.empty()) throw CLI::RequiredError("shards");
+            return merge_and_print(*options);
+        }
+        choose_defaults(command, *options);
+        std::vector<std::optional<std::size_t>> sizes{options->nearest};
+        if (command.count("--by-size") > 0) sizes.assign(options->sizes.begin(), options->sizes.end());
         for (const std::string& detector : split_detectors(options->detectors)) {
-            for (const std::size_t size : *sizes)
+            for (const std::optional<std::size_t>& size : sizes)
                 options->comparison.detectors.push_back(parse_compared_detector(detector, size));
         }
         compare_and_print(*options);
-    });
-}
-
-void add_merge_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("merge", "joins the shards of one comparison");
-    auto shards = std::make_shared<std::vector<std::filesystem::path>>();
-    auto directory = std::make_shared<std::string>();
-    auto overwrite = std::make_shared<bool>(false);
-    command.add_option("shards", *shards, "directories of all shards, in any order")->required();
-    command.add_option("--out", *directory, "directory of the joined comparison")->required();
-    add_overwrite_flag(command, *overwrite);
-    command.callback([shards, directory, overwrite] {
-        require_own_page(*directory);
-        const ComparisonOutcome outcome = merge(*shards, *directory, *overwrite);
-        fmt::print("{}", outcome.summary);
-        say_wide_table(*directory);
-        write_page(*directory);
-        report_errors(outcome.errors);
     });
 }
 

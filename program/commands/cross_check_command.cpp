@@ -35,8 +35,8 @@ std::size_t run(const CrossCheckCommandOptions& options) {
 
 }  // namespace
 
-void add_cross_check_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand(
+void add_cross_check_command(CLI::App& study) {
+    CLI::App& command = *study.add_subcommand(
         "cross-check",
         "compares all exact solvers with each other and with the independent checker, on random scenes and "
         "parameters (also degenerate and extreme ones), under generous and tight time limits. A case on "

@@ -11,6 +11,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/unanswered.hpp"
+#include "solvers/registry.hpp"
 
 #include <cerrno>
 #include <cstddef>
@@ -140,13 +141,24 @@ void detect(DetectOptions& options) {
     report_errors(errors);
 }
 
+void list_solvers() {
+    for (const RldSolverEntry& solver : rld_solvers()) {
+        fmt::print("{:<16} {:<28} {}\n", solver.name,
+                   solver.uses_formulation ? "formulations: tight, paper" : "", solver.description);
+    }
+}
+
 }  // namespace
 
 void add_methods_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("methods", "the detection methods of this build");
+    CLI::App& command =
+        *program.add_subcommand("methods", "the detection methods of this build, or its RLD solvers");
     auto all = std::make_shared<bool>(false);
+    auto solvers = std::make_shared<bool>(false);
     command.add_flag("--all", *all, "also variants that leave a part out, to show what the part is worth");
-    command.callback([all] {
+    command.add_flag("--solvers", *solvers, "the RLD solvers instead")->excludes("--all");
+    command.callback([all, solvers] {
+        if (*solvers) return list_solvers();
         for (const KnownDetector& detector : known_detectors()) {
             if (detector.is_ablation && !*all) continue;
             const ConeSet set = cone_set(detector, {});

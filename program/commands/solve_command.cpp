@@ -145,15 +145,6 @@ void solve_all(const Options& options) {
 
 }  // namespace
 
-void add_solvers_command(CLI::App& program) {
-    program.add_subcommand("solvers", "the RLD solvers of this build")->callback([] {
-        for (const RldSolverEntry& solver : rld_solvers()) {
-            fmt::print("{:<16} {:<28} {}\n", solver.name,
-                       solver.uses_formulation ? "formulations: tight, paper" : "", solver.description);
-        }
-    });
-}
-
 void add_solve_command(CLI::App& program) {
     CLI::App& command =
         *program.add_subcommand("solve", "RLD solutions of scenes: the lane graph of least cost");

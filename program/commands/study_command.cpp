@@ -34,6 +34,8 @@ void list(const std::vector<std::unique_ptr<Study>>& studies) {
     for (const auto& study : studies) {
         fmt::print("{:<22} {}\n", study->description().name, study->description().question);
     }
+    fmt::print("{:<22} {}\n", "cross-check",
+               "do all exact solvers agree with each other and with the checker?");
 }
 
 }  // namespace
@@ -52,6 +54,7 @@ void add_study_command(CLI::App& program) {
         add_output_option(one, "--out", options->out, "write the rows as JSON lines too");
         one.callback([options, &measured = *study] { run(measured, options->out); });
     }
+    add_cross_check_command(command);
     command.callback([options, &command] {
         if (command.get_subcommands().empty()) list(options->studies);
     });

@@ -9,6 +9,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
+#include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/failure_causes.hpp"
@@ -34,6 +35,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct TuneOptions {
+    std::string detector;  ///< empty: RLD
     std::vector<std::string> tracks;
     SceneOptions scenes;
     EvaluationOptions evaluation;
@@ -174,7 +176,45 @@ std::filesystem::path record_path(std::filesystem::path parameters) {
     return parameters.replace_extension(".record.json");
 }
 
-void run(TuneOptions& options) {
+ordered_json describe(const DetectorFigure& figure) {
+    return {{"scenes", figure.scenes}, {"usable", figure.usable}, {"iou", figure.iou}};
+}
+
+/// Tunes a detector with parameters of its own, for usable lanes.
+void tune_method(TuneOptions& options) {
+    const TunableDetector& detector = find_tunable_detector(options.detector);
+    options.scenes.threads = options.evaluation.threads;
+    const DetectorTuningOptions tuning{.evaluations = options.tuner.evaluations,
+                                       .seed = options.scenes.seed,
+                                       .threads = options.evaluation.threads};
+    const SceneSet set = make_scene_set(options.tracks, options.scenes);
+    TunedDetector tuned;
+    {
+        Progress progress("tune " + options.detector, tuning.evaluations);
+        tuned = tune_detector(detector, set, tuning, [&] { progress.advance(); });
+    }
+    ordered_json record{{"method", options.detector},
+                        {"commit", provenance().commit},
+                        {"compiler", provenance().compiler},
+                        {"machine", provenance().machine},
+                        {"tracks", options.tracks}};
+    record.update(scene_options_json(options.scenes));
+    record["evaluations"] = tuning.evaluations;
+    record["figure_of_start"] = describe(tuned.figure_of_start);
+    record["figure"] = describe(tuned.figure);
+    AtomicFile record_file(record_path(options.out));
+    record_file.stream() << record.dump(2) << '\n';
+    AtomicFile parameters(options.out);
+    parameters.stream() << to_json_text(detector, tuned.values);
+    commit_together(std::array{&record_file, &parameters});
+    const auto text = [](const DetectorFigure& figure) {
+        return fmt::format("{:.1f} % usable, IoU {:.1f} %", 100.0 * figure.usable, 100.0 * figure.iou);
+    };
+    fmt::print("{} on {} scenes: {} before, {} after\n", options.detector, tuned.figure.scenes,
+               text(tuned.figure_of_start), text(tuned.figure));
+}
+
+void tune_rld(TuneOptions& options) {
     if (!std::isfinite(options.evaluation.time_limit_ms)) {
         throw InvalidInput("--time-limit", "a tuning records one, inf is none");
     }
@@ -232,12 +272,16 @@ void run(TuneOptions& options) {
 }  // namespace
 
 void add_tune_command(CLI::App& program) {
-    CLI::App& command =
-        *program.add_subcommand("tune", "finds the RLD parameters that answer best on given tracks");
+    CLI::App& command = *program.add_subcommand(
+        "tune", "finds the parameters of RLD, or of another method, that answer best on given tracks");
     auto options = std::make_shared<TuneOptions>();
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 6.6;
+    command.add_option(
+        "--method", options->detector,
+        "delaunay-beam or astar-lane, tuned for usable lanes; RLD without it, to which the options "
+        "from --objective to --most-nodes and from --folds to --log belong");
     command
         .add_option("--tracks", options->tracks,
                     "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
@@ -292,7 +336,16 @@ void add_tune_command(CLI::App& program) {
     command.add_option(
         "--log", options->log,
         "*.jsonl, a line for each evaluation; with the same log, a tuning that was stopped resumes");
-    command.callback([options] { run(*options); });
+    for (const char* const of_rld : {"--objective", "--nearest", "--context", "--time-limit", "--most-nodes",
+                                     "--folds", "--rounds", "--start", "--shape", "--log"})
+        command.get_option(of_rld)->excludes("--method");
+    command.callback([options, &command] {
+        if (options->detector.empty()) return tune_rld(*options);
+        if (command.count("--every") == 0) options->scenes.every_m = 8.8;
+        if (command.count("--evaluations") == 0)
+            options->tuner.evaluations = DetectorTuningOptions{}.evaluations;
+        tune_method(*options);
+    });
 }
 
 }  // namespace conelane::experiments

@@ -5,7 +5,6 @@
 #include "experiments/studies/anytime.hpp"
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/cone_sets.hpp"
-#include "experiments/studies/differential.hpp"
 #include "experiments/studies/growth.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
@@ -165,73 +164,6 @@ TEST(Backends, LeaveOutScenesWithFewerCones) {
     EXPECT_EQ(rows[0].cones, 20u);
     options.backends = {Backend{"magic"}};
     EXPECT_THROW((void)backend_rows(scenes, options), InvalidInput);
-}
-
-TEST(Differential, DrawsACaseFromSeedAndNumberAlone) {
-    const std::vector<AnnotatedScene> scenes(50, straight_scene());
-    std::set<std::size_t> sizes;
-    std::set<std::pair<Pairing, bool>> models;
-    std::set<const AnnotatedScene*> drawn;
-    for (std::size_t number = 0; number < 400; ++number) {
-        const DifferentialCase one = draw_case(scenes, 5, number);
-        const DifferentialCase again = draw_case(scenes, 5, number);
-        EXPECT_EQ(one.scene, again.scene);
-        EXPECT_EQ(one.cones, again.cones);
-        EXPECT_EQ(one.pairing, again.pairing);
-        EXPECT_EQ(one.shape_costs, again.shape_costs);
-        sizes.insert(one.cones);
-        models.emplace(one.pairing, one.shape_costs);
-        drawn.insert(one.scene);
-    }
-    EXPECT_EQ(*sizes.begin(), 12U);
-    EXPECT_EQ(*sizes.rbegin(), 40U);
-    EXPECT_EQ(sizes.size(), 29U);
-    EXPECT_EQ(models.size(), 4U);
-    EXPECT_EQ(drawn.size(), 50U);
-}
-
-TEST(Differential, IsWhatOneHasProvenAgainstWhatTheOtherHasFound) {
-    const auto report = [](SolveStatus status, std::optional<double> objective, std::optional<double> bound) {
-        RldReport made;
-        made.status = status;
-        made.objective = objective;
-        made.bound = bound;
-        return made;
-    };
-    const RldReport optimum = report(SolveStatus::optimal, -3.0, -3.0);
-    const RldReport lower = report(SolveStatus::optimal, -3.1, -3.1);
-    const RldReport close = report(SolveStatus::optimal, -3.0 - 1e-8, -3.0 - 1e-8);
-    const RldReport none = report(SolveStatus::infeasible, {}, {});
-    const RldReport stopped = report(SolveStatus::stopped, {}, {});
-    const RldReport worse = report(SolveStatus::feasible, -2.0, -4.0);
-    const RldReport better = report(SolveStatus::feasible, -3.5, -4.0);
-    EXPECT_EQ(compare_reports(optimum, optimum), Agreement::same_optimum);
-    EXPECT_EQ(compare_reports(optimum, close), Agreement::same_optimum);
-    EXPECT_EQ(compare_reports(optimum, lower), Agreement::differ);
-    EXPECT_EQ(compare_reports(lower, optimum), Agreement::differ);
-    EXPECT_EQ(compare_reports(none, none), Agreement::both_infeasible);
-    EXPECT_EQ(compare_reports(none, optimum), Agreement::differ);
-    EXPECT_EQ(compare_reports(worse, none), Agreement::differ);
-    EXPECT_EQ(compare_reports(optimum, stopped), Agreement::undecided);
-    EXPECT_EQ(compare_reports(none, stopped), Agreement::undecided);
-    EXPECT_EQ(compare_reports(optimum, worse), Agreement::undecided);
-    EXPECT_EQ(compare_reports(better, optimum), Agreement::differ);
-}
-
-TEST(Differential, FindsNoDifference) {
-    const SceneSet set = some_scenes({0.0, 0.3});
-    DifferentialOptions options;
-    options.cases = 40;
-    const std::vector<DifferentialRow> rows = differential_rows(set.scenes, options);
-    for (const DifferentialRow& row : rows) {
-        EXPECT_TRUE(row.agreement == Agreement::same_optimum || row.agreement == Agreement::both_infeasible)
-            << row.drawn.number << " " << row.message;
-    }
-    EXPECT_THAT(differential_outcome(rows, options),
-                testing::AllOf(testing::HasSubstr("40 cases of seed 1"), testing::HasSubstr("0 differ")));
-    options.reference = "exhaustive";  // it takes at most 9 cones
-    EXPECT_THROW((void)differential_rows(set.scenes, options), InvalidInput);
-    EXPECT_THROW((void)differential_rows({}, {}), InvalidInput);
 }
 
 TEST(Anytime, GapIsFromTheBoundToTheBestLaneGraphKnown) {

@@ -231,11 +231,6 @@ class Solvers(unittest.TestCase):
         self.assertEqual((rows[0]["scenes"], rows[0]["open"], rows[0]["open_close"], rows[0]["gap"]), (5, 3, 1, 0.3))
         self.assertIn("| 5 ms | 2 of 5 | 60.0 | 1 of 3 | 30 % |", solvers.anytime_table(rows))
 
-    def test_agreements_are_counted_by_kind(self):
-        row = solvers.differential_row([{"agreement": kind} for kind in ("same optimum", "same optimum", "undecided")])
-        self.assertEqual((row["cases"], row["same optimum"], row["undecided"], row["differ"]), (3, 2, 1, 0))
-        self.assertEqual(solvers.differential_table([row]).splitlines()[2], "| 3 | 2 | 0 | 1 | 0 | 0 |")
-
     def test_certificates_are_read_off_the_last_line(self):
         row = solvers.certificate_row("a: a reason\nverified: 5 optima, 1 infeasible, 2 lower bounds; 0 refused; 3 not verified within 200000 steps\n")
         self.assertEqual((row["optima"], row["infeasible"], row["bounds"], row["refused"], row["beyond"]), (5, 1, 2, 0, 3))

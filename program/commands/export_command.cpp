@@ -24,9 +24,9 @@
 
 #include <fmt/format.h>
 
-// Both commands are about the program of one scene. Rows that a solve adds on demand, (5) and the pairing,
-// are too many to write in full. So without --all-rows, an optimum of the file is only a bound for the scene;
-// it is the scene's optimum if its point is a lane graph.
+// Export and import are about the program of one scene. Rows that a solve adds on demand, (5) and the
+// pairing, are too many to write in full. So without --all-rows, an optimum of the file is only a bound for
+// the scene; it is the scene's optimum if its point is a lane graph.
 namespace conelane::experiments {
 namespace {
 
@@ -94,6 +94,9 @@ class SceneProgram {
 struct ExportOptions {
     ProgramSource source;
     std::string out;
+    std::string solution;  ///< without it, the program is exported
+    std::string solver = "import";
+    double time_limit_ms = 10'000.0;  ///< of the proof
 };
 
 void export_program(const ExportOptions& options) {
@@ -114,14 +117,6 @@ void export_program(const ExportOptions& options) {
     fmt::print("{} columns and {} rows in {}\n", program.columns.size(), program.rows.size(), options.out);
 }
 
-struct ImportOptions {
-    ProgramSource source;
-    std::string solution;
-    std::string solver = "import";
-    std::string out;
-    double time_limit_ms = 10'000.0;  ///< of the proof
-};
-
 SolutionFile read_solution(const std::string& path, const BinaryProgram& program) {
     std::ifstream in(path);
     if (!in) throw InputError(path, 0, "", "cannot be read");
@@ -136,7 +131,7 @@ SolutionFile read_solution(const std::string& path, const BinaryProgram& program
 }
 
 /// The file's claim that the scene has no better lane graph, or none. Throws InputError if it is wrong.
-ClaimVerdict judge(const SceneProgram& program, const ImportOptions& options, double bound) {
+ClaimVerdict judge(const SceneProgram& program, const ExportOptions& options, double bound) {
     ClaimVerdict verdict =
         judge_bound(program.scene, program.parameters, bound, options.solver, options.time_limit_ms);
     if (verdict.kind != ClaimVerdict::Kind::wrong) return verdict;
@@ -151,7 +146,7 @@ ClaimVerdict judge(const SceneProgram& program, const ImportOptions& options, do
 /// What holds of the scene: an optimum or infeasibility only if it is proven here. A point that is not a lane
 /// graph is an error.
 SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& program,
-                         const ImportOptions& options) {
+                         const ExportOptions& options) {
     using Status = SolutionFile::Status;
     SolutionRecord record;
     record.scene = program.scene.id;
@@ -198,7 +193,7 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
     return record;
 }
 
-void import_solution(const ImportOptions& options) {
+void import_solution(const ExportOptions& options) {
     const SceneProgram program(options.source);
     const SolutionFile solution = read_solution(options.solution, program.program);
     const SolutionRecord record = to_record(solution, program, options);
@@ -208,35 +203,34 @@ void import_solution(const ImportOptions& options) {
 
 }  // namespace
 
-void add_exchange_commands(CLI::App& program) {
-    CLI::App& exporting = *program.add_subcommand(
+void add_export_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand(
         "export",
-        "the program of a scene as MPS or LP file. Without --all-rows it leaves out the rows that conelane's "
-        "solvers add on demand: no cycles (5), and the pairing near_far");
-    auto exports = std::make_shared<ExportOptions>();
-    add_program_options(exporting, exports->source);
-    add_output_option(exporting, "--out", exports->out, "*.mps or *.lp")->required();
-    exporting.callback([exports] { export_program(*exports); });
-
-    CLI::App& importing = *program.add_subcommand(
-        "import-solution",
-        "reads another program's solution of an exported file, for `conelane check`. "
-        "The options must be those of the export. A file whose point, objective or bound "
-        "contradict each other or the program is refused, and so is an optimum that an "
-        "own search within the time limit refutes; one that it does not prove is "
-        "unverified and counts as feasible. A solution with a cycle or against "
-        "the pairing is an error: only --all-rows puts those rows into the file");
-    auto imports = std::make_shared<ImportOptions>();
-    add_program_options(importing, imports->source);
-    importing
-        .add_option("--sol", imports->solution,
-                    "a solution file of CBC, GLPK, HiGHS, SCIP or Gurobi, or MIPLIB's")
+        "the program of a scene as MPS or LP file, or with --sol another program's solution of that file as "
+        "solution of the scene, for `conelane check`.\n"
+        "Without --all-rows the file leaves out the rows that conelane's solvers add on demand: no cycles "
+        "(5), "
+        "and the pairing near_far. A solution file whose point, objective or bound contradict each other or "
+        "the "
+        "program is refused, and so is an optimum that an own search within the time limit refutes; one that "
+        "it does not prove is unverified and counts as feasible. A solution with a cycle or against the "
+        "pairing "
+        "is an error");
+    auto options = std::make_shared<ExportOptions>();
+    add_program_options(command, options->source);
+    CLI::Option& solution =
+        *command.add_option("--sol", options->solution,
+                            "a solution file of CBC, GLPK, HiGHS, SCIP or Gurobi, or MIPLIB's; the other "
+                            "options must be those of the export");
+    command.add_option("--solver", options->solver, "name of the solver, for the records")
+        ->capture_default_str()
+        ->needs(&solution);
+    add_time_limit_option(command, options->time_limit_ms);
+    command.get_option("--time-limit")->needs(&solution);
+    add_output_option(command, "--out", options->out, "*.mps or *.lp; with --sol *.solutions.jsonl")
         ->required();
-    importing.add_option("--solver", imports->solver, "name of the solver, for the records")
-        ->capture_default_str();
-    add_time_limit_option(importing, imports->time_limit_ms);
-    add_output_option(importing, "--out", imports->out, "*.solutions.jsonl")->required();
-    importing.callback([imports] { import_solution(*imports); });
+    command.callback(
+        [options] { options->solution.empty() ? export_program(*options) : import_solution(*options); });
 }
 
 }  // namespace conelane::experiments
