@@ -17,7 +17,8 @@ inline constexpr std::size_t kHelpColumns = 100;
 /// Precondition: `width` > 0.
 [[nodiscard]] std::vector<std::string> wrapped(std::string_view text, std::size_t width);
 
-/// CLI11's help with lines of at most kHelpColumns columns.
+/// CLI11's help with lines of at most kHelpColumns columns. A list of commands has the first sentence of each
+/// description.
 class HelpFormatter : public CLI::Formatter {
   public:
     std::string make_option(const CLI::Option* option, bool is_positional) const override;

@@ -27,6 +27,22 @@ TEST_F(Program, HelpIsEverywhere) {
     }
 }
 
+/// What has become a part of another command is called by its old name, too.
+TEST_F(Program, OldNamesOfCommandsWork) {
+    EXPECT_EQ(run("solvers").output, run("methods --solvers").output);
+    EXPECT_EQ(run("cross-check --help").output, run("study cross-check --help").output);
+    EXPECT_EQ(run("import-solution --help").output, run("export --help").output);
+    EXPECT_EQ(run("tune-method --help").output, run("tune --help").output);
+    EXPECT_EQ(run("solvers").errors, "");
+    expect_refused("sweep --nearest 6 --out r", {"--nearest", "--by-size"});
+    expect_refused("compare --sizes 6,8 --out r", {"--sizes", "--by-size"});
+    expect_refused("compare --merge --out r", {"shards"});
+    expect_refused("compare part0 --out r", {"shards", "--merge"});
+    expect_refused("export --solver x --scenes s --id a --out x.mps", {"--solver", "--sol"});
+    expect_refused("tune --method astar-lane --rounds 2 --tracks generated:circle --out p.json",
+                   {"--rounds", "--method"});
+}
+
 TEST_F(Program, TheVersionNamesCommitCompilerAndSolvers) {
     const std::string version = run("--version").output;
     EXPECT_THAT(version,
