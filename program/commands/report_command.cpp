@@ -36,7 +36,7 @@ void make_report(const ReportOptions& options) {
 void add_report_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("report", "one HTML page from stored results");
     auto options = std::make_shared<ReportOptions>();
-    command.add_option("--results", options->results, "directory that `conelane compare` wrote, or one of studies: STUDY.jsonl")->required();
+    command.add_option("--results", options->results, "directory that `conelane compare` wrote")->required();
     add_output_option(command, "--out", options->page, "PAGE.html")->required();
     command.add_option("--png", options->pictures, "folder for the main figures as PNG too");
     command.add_option("--python", options->python, "interpreter that has matplotlib; python3 without it");
