@@ -60,6 +60,8 @@ std::string_view to_string(ConeColor color) {
             return "yellow";
         case ConeColor::orange:
             return "orange";
+        case ConeColor::big_orange:
+            return "big_orange";
         case ConeColor::unknown:
             break;
     }
@@ -77,6 +79,9 @@ ColorProbabilities probabilities_of(ConeColor color) {
             break;
         case ConeColor::orange:
             result.orange = 1.0;
+            break;
+        case ConeColor::big_orange:
+            result.big_orange = 1.0;
             break;
         case ConeColor::unknown:
             result.unknown = 1.0;

@@ -28,8 +28,8 @@ class CMakeBuild(build_ext):
         build = Path(os.environ.get("CONELANE_BUILD_DIR", BUILD / f"cmake-{sys.implementation.cache_tag}"))
         if "CONELANE_BUILD_DIR" not in os.environ:
             self.configure(build)
-        subprocess.run(["cmake", "--build", str(build), "--target", "conelane_python",
-                        "--parallel", str(os.cpu_count() or 1)], check=True)
+        jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or str(os.cpu_count() or 1)
+        subprocess.run(["cmake", "--build", str(build), "--target", "conelane_python", "--parallel", jobs], check=True)
         target = Path(self.get_ext_fullpath(ext.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(build / "python" / "conelane" / target.name, target)

@@ -234,7 +234,8 @@ ConeId ConeMemory::given_id(ConeId own) const {
 ConeColor color_of(const ConeMemory::RememberedCone& cone) {
     ConeColor best = ConeColor::unknown;
     int most = 0;
-    for (const ConeColor color : {ConeColor::orange, ConeColor::blue, ConeColor::yellow}) {
+    for (const ConeColor color :
+         {ConeColor::big_orange, ConeColor::orange, ConeColor::blue, ConeColor::yellow}) {
         const int count = cone.colors[static_cast<std::size_t>(color)];
         if (count > most) {
             most = count;

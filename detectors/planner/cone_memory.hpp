@@ -41,7 +41,7 @@ class ConeMemory {
         double evidence = 1.0;
         std::int64_t last_seen = 0;   ///< number of the frame
         double confidence = 1.0;      ///< mean
-        std::array<int, 4> colors{};  ///< sightings in each color
+        std::array<int, 5> colors{};  ///< sightings in each color
     };
     [[nodiscard]] const std::vector<RememberedCone>& cones() const { return cones_; }
 

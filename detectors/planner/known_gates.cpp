@@ -85,7 +85,7 @@ void GateEvidence::observe(const Registration& registration, const Frame& frame,
                 const double off_m = cone.x_m - place.x_m;
                 if (std::abs(off_m) > kAlong_m) continue;
                 count[cone.side] = std::min(count[cone.side] + 1.0, 2.0);
-                if (cone.color == ConeColor::orange) color += kColor;
+                if (is_orange(cone.color)) color += kColor;
                 if (cone.color == ConeColor::blue || cone.color == ConeColor::yellow) color -= kColor;
                 sum_m += off_m;
                 ++all;

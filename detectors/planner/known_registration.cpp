@@ -266,9 +266,9 @@ RegistrationFit KnownRegistration::fit(const Registration& registration, std::sp
         on_boundary.push_back(seen.position);
         result.score += 1.0 - square(contact->off_m / kMatched_m);
         if (seen.color != ConeColor::unknown && contact->color != ConeColor::unknown) {
-            if (seen.color == contact->color) {
+            if (seen.color == contact->color || (is_orange(seen.color) && is_orange(contact->color))) {
                 result.score += kColor;
-            } else if (seen.color != ConeColor::orange && contact->color != ConeColor::orange) {
+            } else if (!is_orange(seen.color) && !is_orange(contact->color)) {
                 result.score -= kColor;
             }
         }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -35,10 +36,12 @@ void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memor
     struct Post {
         double s_m;
         bool left;
+        bool small;
     };
     std::vector<Post> posts;
     for (const ConeMemory::RememberedCone& cone : memory.cones()) {
-        if (cone.sightings < 2 || color_of(cone) != ConeColor::orange) continue;
+        const ConeColor color = color_of(cone);
+        if (cone.sightings < 2 || !is_orange(color)) continue;
         if ((cone.position - first_->position).norm() > settings_.gate_within_m) continue;
         std::optional<Post> post;
         double nearest_m = kMaxSide_m;
@@ -48,12 +51,13 @@ void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memor
             if (offset_m >= nearest_m || std::abs(at.ahead_m(cone.position)) > 1.0) continue;
             nearest_m = offset_m;
             if (offset_m >= kMinSide_m)
-                post = Post{point.s_m + at.ahead_m(cone.position), at.left_m(cone.position) > 0.0};
+                post = Post{point.s_m + at.ahead_m(cone.position), at.left_m(cone.position) > 0.0,
+                            color == ConeColor::orange};
         }
         if (post) posts.push_back(*post);
     }
-    // The first gate ahead that has a post on either side.
-    std::ranges::sort(posts, {}, &Post::s_m);
+    // The first gate ahead that has a post on either side; one of big cones before all others.
+    std::ranges::sort(posts, {}, [](const Post& post) { return std::pair(post.small, post.s_m); });
     for (const Post& first : posts) {
         double sum_m = 0.0;
         int left = 0;

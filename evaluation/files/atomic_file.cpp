@@ -33,7 +33,10 @@ bool is_open_descriptor(const fs::path& target) {
 }
 
 [[noreturn]] void fail(const fs::path& target, int error) {
-    throw InputError(target, 0, "", "cannot be written: " + std::generic_category().message(error));
+    std::string message = "cannot be written: " + std::generic_category().message(error);
+    if (error == ENOENT && target.has_parent_path())
+        message += "; make the folder '" + target.parent_path().string() + "' first";
+    throw InputError(target, 0, "", message);
 }
 
 /// A name beside `place` that no other process uses.

@@ -7,7 +7,8 @@
 namespace conelane {
 namespace {
 
-constexpr std::array kColors{ConeColor::blue, ConeColor::yellow, ConeColor::orange, ConeColor::unknown};
+constexpr std::array kColors{ConeColor::blue, ConeColor::yellow, ConeColor::orange, ConeColor::big_orange,
+                             ConeColor::unknown};
 constexpr std::size_t kClasses = 5;
 
 }  // namespace

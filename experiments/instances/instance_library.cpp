@@ -210,7 +210,7 @@ std::optional<Instance> instance_of(const Scene& scene, const std::string& name,
     if (model.update(*limited.problem, no_deadline)) return std::nullopt;
     const SolvedProgram solved = solve_and_separate(model, formulation, time_limit_ms);
     Instance instance{name, model.program(), optimum_by_both(name, exact, solved, *limited.problem, model)};
-    if (instance.optimum.status != KnownOptimum::Status::open) {
+    if (instance.optimum.status != KnownOptimum::Status::not_by_both) {
         add_rows(instance.program, solved.added);
     } else if (!solved.added.empty()) {
         instance.optimum.bound.reset();  // it is the bound of a program with more rows

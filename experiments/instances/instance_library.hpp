@@ -42,11 +42,11 @@ struct InstanceOptions {
 /// State of a program's optimum.
 struct KnownOptimum {
     enum class Status {
-        optimal,     ///< both engines proved `best`
-        infeasible,  ///< both engines proved that there is no point
-        open,        ///< one of the engines did not finish
+        optimal,      ///< both engines proved `best`
+        infeasible,   ///< both engines proved that there is no point
+        not_by_both,  ///< at least one of the engines did not finish
     };
-    Status status = Status::open;
+    Status status = Status::not_by_both;
     std::optional<double> best;          ///< objective of a point; present if optimal
     std::optional<double> bound;         ///< proven lower bound of the program in its file
     std::optional<double> path_pair_ms;  ///< time of the proof by path-pair; absent if it did not finish
@@ -104,8 +104,8 @@ struct InstanceCounts {
 };
 
 /// Writes NAME.printed.mps.gz and NAME.tight.mps.gz for each scene and objective into the folder, then
-/// conelane.test, the list of these files, conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or for an
-/// open optimum `=best= NAME VALUE` and `=bestdual= NAME VALUE`, as far as they are known, and index.csv: a
+/// conelane.test, the list of these files, conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or for any
+/// other optimum `=best= NAME VALUE` and `=bestdual= NAME VALUE`, as far as they are known, and index.csv: a
 /// line for each file, with its scene, objective, class and features. The same scenes
 /// give the same files, except open ones and the classes, which depend on the clock. `advance` is called
 /// after each program.

@@ -1,6 +1,7 @@
 #include "experiments/options/argument_words.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,23 @@ void require_whole_list(const CLI::Option* option, std::string_view text) {
     if (has_empty_part(text, option->get_delimiter()))
         throw CLI::ValidationError(option->get_name(),
                                    fmt::format("'{}' is a list with an empty part", text));
+}
+
+/// A program from outside behind a list of other things would be taken for one of these, and a value too many
+/// would be "not expected", without the reason.
+void require_own_value(const CLI::Option* option, int values_before, const std::string& word) {
+    constexpr std::array<std::string_view, 4> kMethods{"--method", "--methods", "--solver", "--solvers"};
+    constexpr std::array<std::string_view, 3> kOutside{"exec:", "solver:", "lanes:"};
+    if (option == nullptr) return;
+    const int most = option->get_items_expected_max();
+    const bool is_outside =
+        std::ranges::any_of(kOutside, [&](std::string_view kind) { return word.starts_with(kind); });
+    const bool is_foreign =
+        most > 1 && is_outside && std::ranges::find(kMethods, option->get_name()) == kMethods.end();
+    if (values_before < most && !is_foreign) return;
+    throw CLI::ValidationError(
+        option->get_name(),
+        fmt::format("does not take '{}'; write the values of an option directly behind its name", word));
 }
 
 /// The sub-command of that name; null if there is none.
@@ -51,12 +69,14 @@ bool takes_positionals(const CLI::App& app) {
 void refuse_misread_words(CLI::App& program, std::span<const char* const> arguments) {
     CLI::App* app = &program;
     const CLI::Option* option = nullptr;  // the option that was named last
+    int values = 0;                       // number of its values so far
     bool names_a_command = true;          // whether the next word, directly behind a command, names a command
     for (const std::string word : arguments) {
         if (word.starts_with("-") && word.size() > 1) {
             const std::size_t equals = word.find('=');
             option = app->get_option_no_throw(word.substr(0, equals));
-            if (equals != std::string::npos) require_whole_list(option, word.substr(equals + 1));
+            values = equals != std::string::npos ? 1 : 0;
+            if (values == 1) require_whole_list(option, word.substr(equals + 1));
             names_a_command = false;
             continue;
         }
@@ -66,8 +86,10 @@ void refuse_misread_words(CLI::App& program, std::span<const char* const> argume
             names_a_command = true;
             continue;
         }
-        if (names_a_command && !app->get_subcommands({}).empty() && !takes_positionals(*app))
-            refuse_name(*app, word);
+        if (!takes_positionals(*app)) {
+            if (names_a_command && !app->get_subcommands({}).empty()) refuse_name(*app, word);
+            require_own_value(option, values++, word);
+        }
         names_a_command = false;
         require_whole_list(option, word);
     }

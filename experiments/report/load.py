@@ -13,6 +13,8 @@ import numpy as np
 # Folders of further comparisons in the results, for experiments that take other scenes or options: cone-set sizes, the
 # RLD paper's topologies, all candidates scored.
 BESIDE = ("sweep", "topologies", "candidates")
+# Files of `conelane study` that make a page without a comparison.
+STUDIES = ("optimality.jsonl", "backends.jsonl", "anytime.jsonl", "growth.jsonl", "formulations.jsonl", "relaxations.jsonl")
 SUCCESSES = ("ground_truth", "near_ground_truth", "too_short", "diverging_from_20")
 CATEGORIES = SUCCESSES + ("diverging_below_20", "none")
 PAPER_CONDITION = "paper"
@@ -325,12 +327,20 @@ def _read_beside(path):
 
 def load_results(directory):
     """Reads run.json, results.jsonl, scores.jsonl, and, where they are, scenes.tracks.json and the scores of the
-    comparisons beside. Scenes and lanes are large; viewer and gallery read them themselves."""
+    comparisons beside. Scenes and lanes are large; viewer and gallery read them themselves. A folder of studies alone
+    gives results without rows and samples."""
     def path(name):
         return os.path.join(directory, name)
 
     if not os.path.isdir(directory):
         raise InputError(f"{directory}: is not a directory")
+    studies = [path(name) for name in STUDIES if os.path.exists(path(name))]
+    if studies and not any(os.path.exists(path(name)) for name in ("run.json", "results.jsonl", "scores.jsonl")):
+        _, row = next(read_lines(studies[0]), (0, {}))
+        run = {key: row[key] for key in ("commit", "compiler", "machine") if key in row}
+        return Results(directory, run, [], [], {folder: [] for folder in BESIDE}, {})
+    if not os.path.exists(path("run.json")):
+        raise InputError(f"{path('run.json')}: is missing; studies without a comparison are read from {', '.join(STUDIES)}")
     run = read_object(path("run.json"))
     rows = _read_rows(path("results.jsonl"))
     samples = _read_samples(path("scores.jsonl"))

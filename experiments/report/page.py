@@ -128,6 +128,23 @@ def _sections(results, published, data, advance):
     return [section for section in sections if section[3]]
 
 
+def _sections_of_studies(results, published, advance):
+    """Where there is no comparison."""
+    absent = []
+    exactness = headline.exactness(results) + blocks(experiments.EXACTNESS, results, published, absent, advance)
+    missing = f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else ""
+    return [("exactness", "Exactness", "The benefit of exact solvers", exactness),
+            ("protocol", "Protocol", "Protocol and provenance", f"<h3>Run</h3>{provenance.listed(results.run)}{missing}")]
+
+
+def _intro(results, data):
+    if not results.samples:
+        return ('<div><h1>Solvers of cone lanes, compared</h1><p class="lead">Studies of solvers, without a comparison of methods. '
+                f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.</p></div>")
+    return (f'<div><h1>Lanes between cones, compared</h1>\n<p class="lead">{_lead(results)}</p>'
+            f"{headline.answer(results)}</div>{headline.picture(results, data)}")
+
+
 def _lead(results):
     """What kind of comparison this is."""
     held_out = results.run.get("cross_validation")
@@ -146,9 +163,12 @@ def _lead(results):
 
 def render(results, published, tracks=()):
     """The whole page as text; the same results give the same bytes. `tracks`: see read_scenes."""
-    data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"], published["usual_width_m"])
     progress = Progress("page", sum(map(len, _EXPERIMENTS)))
-    sections = _sections(results, published, data, progress.advance)
+    if results.samples:
+        data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"], published["usual_width_m"])
+        sections = _sections(results, published, data, progress.advance)
+    else:
+        data, sections = None, _sections_of_studies(results, published, progress.advance)
     progress.end()
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
@@ -159,8 +179,7 @@ def render(results, published, tracks=()):
 <link rel="icon" href="data:,"><style>{_asset("style.css")}{gallery.style()}</style></head>
 <body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
 <button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
-<main><div class="intro"><div><h1>Lanes between cones, compared</h1>
-<p class="lead">{_lead(results)}</p>{headline.answer(results)}</div>{headline.picture(results, data)}</div>
+<main><div class="intro">{_intro(results, data)}</div>
 {body}</main>
 <script>{_asset("tables.js")}</script>
 <script>{_asset("viewer.js")}</script>

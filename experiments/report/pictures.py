@@ -13,6 +13,8 @@ _MAIN = (("usable.png", "Usable lanes", quality.usable_figure),
 def pictures(results):
     """(file name, bytes) of each main figure that the results can show; of several conditions, the papers'."""
     made = []
+    if not results.samples:
+        return made
     results = results.under(results.main_condition)
     with picture_colors():
         for name, title, figure_of in _MAIN:

@@ -31,11 +31,12 @@ def _conditions(results, conditions):
     return f"<li>Conditions. {'. '.join(pieces)}.</li>" if pieces else ""
 
 
-def html(results, data, conditions):
-    def listed(entries):
-        rows = "".join(f"<div><dt>{escape(key)}</dt><dd>{escape(value)}</dd></div>" for key, value in _flat(entries))
-        return f'<dl class="run">{rows}</dl>'
+def listed(entries):
+    rows = "".join(f"<div><dt>{escape(key)}</dt><dd>{escape(value)}</dd></div>" for key, value in _flat(entries))
+    return f'<dl class="run">{rows}</dl>'
 
+
+def html(results, data, conditions):
     kept = ("" if not results.run.get("candidates") else
             "<li>This run kept all enumerated lanes to score them. This takes time, which is part of the latencies of enumerating "
             "methods.</li>")

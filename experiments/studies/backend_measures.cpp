@@ -164,9 +164,11 @@ void add_summaries(const Group& group, std::span<const Run> common, double limit
         for (const Run& run : common) {
             const BackendRow& row = *group.rows[b].at(run);
             summary.solved += is_solved(row, limit_ms) ? 1 : 0;
-            summary.refuted += row.refuted ? 1 : 0;
-            summary.errors += row.refuted || row.status == SolveStatus::error ? 1 : 0;
             if (row.engine_ms) engine_ms.push_back(*row.engine_ms);
+        }
+        for (const auto& [run, row] : group.rows[b]) {
+            summary.refuted += row->refuted ? 1 : 0;
+            summary.errors += row->refuted || row->status == SolveStatus::error ? 1 : 0;
         }
         const std::vector<double> times = penalised_times_ms(runs[b], limit_ms);
         summary.geometric_ms = shifted_geometric_mean(times, kGeometricMeanShift_ms);

@@ -22,8 +22,8 @@ struct BackendSummary {
     std::size_t scenes = 0;
     std::size_t runs = 0;
     std::size_t solved = 0;
-    std::size_t errors = 0;  ///< with refuted claims
-    std::size_t refuted = 0;
+    std::size_t errors = 0;     ///< of all runs of this backend, with refuted claims
+    std::size_t refuted = 0;    ///< likewise
     double geometric_ms = 0.0;  ///< shifted by 1 ms, failures at the limit
     double par1_ms = 0.0;       ///< mean, failures at the limit
     double par2_ms = 0.0;

@@ -174,26 +174,24 @@ void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedSc
     results.blocks.push_back(std::move(block));
 }
 
-/// Sums over the rows of one size and backend.
+/// Sums over the rows of one size and backend; errors and refuted claims in every order, all else unshuffled.
 struct Sums {
     std::size_t optimal = 0, infeasible = 0, unproven = 0, errors = 0, refuted = 0;
     double nodes = 0.0;
     std::vector<double> latencies_ms;
 
     void add(const BackendRow& row) {
+        const bool is_error = row.status == SolveStatus::error;
+        refuted += row.refuted ? 1 : 0;
+        errors += is_error && !row.refuted ? 1 : 0;
+        if (row.permutation > 0) return;
         latencies_ms.push_back(row.latency_ms);
         nodes += static_cast<double>(row.nodes);
-        if (row.refuted) {
-            ++refuted;
-        } else if (row.status == SolveStatus::optimal) {
-            ++optimal;
-        } else if (row.status == SolveStatus::infeasible) {
-            ++infeasible;
-        } else if (row.status == SolveStatus::error) {
-            ++errors;
-        } else {
-            ++unproven;
-        }
+        if (row.refuted || is_error) return;
+        std::size_t& outcome = row.status == SolveStatus::optimal      ? optimal
+                               : row.status == SolveStatus::infeasible ? infeasible
+                                                                       : unproven;
+        ++outcome;
     }
 };
 
@@ -461,7 +459,6 @@ std::string backend_table(std::span<const BackendRow> rows) {
     std::vector<std::pair<std::size_t, std::string>> order;
     std::map<std::pair<std::size_t, std::string>, Sums> sums_of;
     for (const BackendRow& row : rows) {
-        if (row.permutation > 0) continue;
         const std::pair key{row.size, row.backend.label()};
         if (!sums_of.contains(key)) order.push_back(key);
         sums_of[key].add(row);

@@ -95,7 +95,8 @@ void mark_refuted_claims(std::span<BackendRow> rows);
 /// The answers by backend and size, and the errors among them; a refuted claim is one.
 [[nodiscard]] AnswerErrors errors_among(std::span<const BackendRow> rows);
 
-/// A line for each size and backend for a terminal, for the scenes in their original order.
+/// A line for each size and backend for a terminal: errors and refuted claims in every order, all else for
+/// the scenes in their original order.
 [[nodiscard]] std::string backend_table(std::span<const BackendRow> rows);
 
 /// "12", or "all" for kAllVisible.

@@ -1,7 +1,7 @@
 /** The library of conelane in WebAssembly. Lengths in metres, angles in radians (counter-clockwise, 0 along +x), times in
  * milliseconds. Scenes and answers have the keys of the file formats, docs/formats.md. */
 
-export type Color = "unknown" | "blue" | "yellow" | "orange";
+export type Color = "unknown" | "blue" | "yellow" | "orange" | "big_orange";
 export type Mission = "trackdrive" | "autocross" | "acceleration" | "skidpad";
 export type StopReason = "time" | "iterations" | "memory";
 

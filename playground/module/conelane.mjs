@@ -1,7 +1,7 @@
 // The library of conelane as a module: lanes between cones, in a browser, in a worker and in Node. See docs/playground.md and
 // conelane.d.ts. Scenes and answers have the keys of the file formats, docs/formats.md.
 
-const COLORS = ["unknown", "blue", "yellow", "orange"]; // in the order of ConeColor
+const COLORS = ["unknown", "blue", "yellow", "orange", "big_orange"]; // in the order of ConeColor
 const MISSIONS = ["trackdrive", "autocross", "acceleration", "skidpad"];
 
 /** An error of the library, with its message; or a module that stopped, which starts again with the next call. */

@@ -36,7 +36,7 @@ function readScene(json, name, line) {
     if (!Number.isSafeInteger(cone.id)) fail(name, line, `cones[${i}].id`, "must be a whole number");
     if (ids.has(cone.id)) fail(name, line, `cones[${i}].id`, "is there twice");
     ids.add(cone.id);
-    const color = COLORS.includes(cone.color) ? cone.color : "unknown";
+    const color = COLORS.find((one) => String(cone.color).endsWith(one)) ?? "unknown"; // big orange cones are orange ones here
     return { id: cone.id, x: number(cone.x, `cones[${i}].x`), y: number(cone.y, `cones[${i}].y`), color };
   });
   return { id: String(json.id ?? line), pose, cones, truth: json.ground_truth ?? null };

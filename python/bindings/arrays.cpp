@@ -14,7 +14,8 @@
 namespace conelane::python {
 namespace {
 
-constexpr std::array kColors{ConeColor::unknown, ConeColor::blue, ConeColor::yellow, ConeColor::orange};
+constexpr std::array kColors{ConeColor::unknown, ConeColor::blue, ConeColor::yellow, ConeColor::orange,
+                             ConeColor::big_orange};
 
 std::string shape_of(const py::array& array) {
     return py::str(py::handle(array.attr("shape")));
@@ -64,7 +65,7 @@ std::string color_names() {
 ConeColor color_of(std::int64_t code, const std::string& key) {
     if (code < 0 || code >= static_cast<std::int64_t>(kColors.size())) {
         throw InvalidInput(key,
-                           std::to_string(code) + " is not a colour; colours are 0 to 3: " + color_names());
+                           std::to_string(code) + " is not a colour; colours are 0 to 4: " + color_names());
     }
     return kColors[static_cast<std::size_t>(code)];
 }

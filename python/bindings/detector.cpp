@@ -196,7 +196,7 @@ ids : (N,) array_like of int, optional
     Distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its
     id. By default the index.
 colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
-    "unknown", "blue", "yellow", "orange", or their codes 0 to 3 (`Color`). Or probabilities of unknown, blue,
+    "unknown", "blue", "yellow", "orange", "big_orange", or their codes 0 to 4 (`Color`). Or probabilities of unknown, blue,
     yellow, small orange and big orange, which add up to 1 for each cone: `front` uses them, other detectors
     the most probable label. By default unknown.
 confidences : (N,) array_like of float, optional

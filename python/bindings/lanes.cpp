@@ -49,18 +49,11 @@ std::pair<LaneAnswer, Scene> as_cones(const LaneObject& lane) {
     return {std::move(answer), std::move(scene)};
 }
 
-py::array_t<double> centre_line(const LaneObject& lane, const DrivableOptions& options) {
-    DrivableLane line;
-    {
-        const py::gil_scoped_release unlocked;
-        if (lane.record.points) {
-            const auto [answer, scene] = as_cones(lane);
-            line = drivable(answer, scene, options);
-        } else {
-            line = drivable(lane.record.answer, *lane.scene, options);
-        }
-    }
-    return array(line);
+DrivableLane drivable(const LaneObject& lane, const DrivableOptions& options) {
+    const py::gil_scoped_release unlocked;
+    if (!lane.record.points) return conelane::drivable(lane.record.answer, *lane.scene, options);
+    const auto [answer, scene] = as_cones(lane);
+    return conelane::drivable(answer, scene, options);
 }
 
 std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
@@ -180,8 +173,8 @@ if no lane, or only the right boundary, was found.)")
             "centre_line",
             [](const LaneObject& l, double step_m, double smoothing_m, double usual_width_m) {
                 try {
-                    return centre_line(
-                        l, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = usual_width_m});
+                    return array(drivable(
+                        l, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = usual_width_m}));
                 } catch (const InvalidInput& error) {
                     if (error.key() != "default_width_m") throw;
                     throw InvalidInput("usual_width_m",
@@ -222,6 +215,33 @@ Examples
 [0.0, 2.0, 4.0, 6.0, 8.0]
 )")
         .def(
+            "drivable",
+            [](const LaneObject& l, double step_m, double smoothing_m, double max_gap_m,
+               double default_width_m) {
+                return drivable(l, {step_m, smoothing_m, max_gap_m, default_width_m});
+            },
+            py::arg("step_m") = DrivableOptions{}.step_m, py::kw_only(),
+            py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
+            py::arg("max_gap_m") = DrivableOptions{}.max_gap_m,
+            py::arg("default_width_m") = DrivableOptions{}.default_width_m,
+            R"(drivable(step_m=0.5, *, smoothing_m=1.75, max_gap_m=5.5, default_width_m=3.5)
+
+The centre line with the gaps that it bridges and the boundary that was inferred.
+
+Parameters
+----------
+step_m, smoothing_m : float
+    As of `centre_line`.
+max_gap_m : float
+    Longer gaps of a boundary are reported as bridged [m].
+default_width_m : float
+    The `usual_width_m` of `centre_line`.
+
+Returns
+-------
+DrivableLane
+)")
+        .def(
             "plot",
             [](const py::object& self, const py::object& ax) {
                 return py::module_::import("conelane._plot").attr("plot_lane")(self, ax);
@@ -249,9 +269,36 @@ matplotlib.axes.Axes
         });
 }
 
+void add_drivable_lane(py::module_& module) {
+    py::class_<DrivableLane>(module, "DrivableLane",
+                             R"(A lane ready to be driven. Every attribute is a copy.)")
+        .def_property_readonly(
+            "centre_line", [](const DrivableLane& d) { return array(d); },
+            "(N, 7) ndarray of float64: columns as of `Lane.centre_line`")
+        .def_readonly("closed", &DrivableLane::closed, "bool: the last row is one step before the first one")
+        .def_readonly("length_m", &DrivableLane::length_m, "float: of the centre line [m]")
+        .def_readonly("trusted_m", &DrivableLane::trusted_m,
+                      "float or None: arc length up to which the detector trusts the lane [m]")
+        .def_property_readonly(
+            "bridged",
+            [](const DrivableLane& d) {
+                py::list gaps;
+                for (const BridgedGap& gap : d.bridged)
+                    gaps.append(py::make_tuple(gap.on_left ? "left" : "right", gap.from_s_m, gap.to_s_m));
+                return gaps;
+            },
+            R"(list of (str, float, float): gaps between successive cones longer than `max_gap_m`, in which a cone is
+missing or was not seen: "left" or "right", and the arc lengths beside the two cones [m])")
+        .def_readonly("left_inferred", &DrivableLane::left_inferred,
+                      "bool: no cone of the left boundary is known, it is assumed at `default_width_m`")
+        .def_readonly("right_inferred", &DrivableLane::right_inferred,
+                      "bool: the same for the right boundary");
+}
+
 }  // namespace
 
 void add_lanes(py::module_& module) {
+    add_drivable_lane(module);
     py::class_<LaneObject> lane(module, "Lane", R"(The answer of a detector. Every attribute is a copy.)");
     add_geometry(lane);
     add_answer(lane);

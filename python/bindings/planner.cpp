@@ -28,17 +28,8 @@ struct PlanObject {
 /// A planner that may be called from any thread: calls of one instance wait for each other.
 class PlannerObject {
   public:
-    PlannerObject(const std::string& mission, std::string detector, std::optional<int> laps, double max_age_s,
-                  const py::kwargs& given)
-        : mission_(mission_named(mission)), detector_(std::move(detector)) {
-        PlannerOptions options;
-        options.mission = mission_;
-        options.detector = detector_;
-        options.detector_options = detector_options(detector_, given);
-        options.laps = laps;
-        options.max_age_s = max_age_s;
-        planner_ = make_planner(options);
-    }
+    explicit PlannerObject(const PlannerOptions& options)
+        : mission_(options.mission), detector_(options.detector), planner_(make_planner(options)) {}
 
     [[nodiscard]] PlanObject update(const Frame& frame, std::optional<double> time_limit_ms) {
         const double limit_ms = time_limit_ms.value_or(std::numeric_limits<double>::infinity());
@@ -127,8 +118,10 @@ this frame, so the rest of an earlier one; "lost": no earlier lane is left, so t
 "finished": the last line is crossed, and the lane is the stretch on which to come to rest.)")
         .def_property_readonly(
             "centre_line", [](const PlanObject& p) { return array(p.plan.lane); },
-            R"((N, 7) ndarray of float64: from the car on, columns as of `Lane.centre_line`. N is 0 if the state is
-"searching" or "lost", and when the car is at rest at the end.)")
+            R"((N, 7) ndarray of float64: that of `lane`, from the car on. N is 0 if the state is "searching" or "lost",
+and when the car is at rest at the end.)")
+        .def_property_readonly(
+            "lane", [](const PlanObject& p) { return p.plan.lane; }, "DrivableLane: the lane to drive")
         .def_property_readonly(
             "safe_m", [](const PlanObject& p) { return p.plan.safe_m; },
             "float: trusted length along `centre_line`, or the rest of it [m]")
@@ -162,7 +155,7 @@ void add_planner(py::module_& module) {
     add_plan(module);
     py::class_<PlannerObject>(
         module, "Planner",
-        R"(Planner(mission="trackdrive", detector="front-warm", laps=None, *, max_age_s=1.0, **options)
+        R"(Planner(mission="trackdrive", detector="front-warm", laps=None, *, max_age_s=1.0, step_m=0.5, smoothing_m=1.75, max_gap_m=5.5, default_width_m=3.5, **options)
 
 The path to drive in each frame of an event, from the start line to the stop.
 
@@ -176,6 +169,8 @@ laps : int, optional
     Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
 max_age_s : float
     Largest age of a lane that is still driven [s].
+step_m, smoothing_m, max_gap_m, default_width_m : float
+    Of the lanes in plans, see `Lane.drivable`.
 nearest, parameters, pairing, weights : optional
     Options of the detector, see `Detector`.
 
@@ -204,9 +199,23 @@ Examples
 >>> bool(plan.centre_line[0, 1] > 0.9)
 True
 )")
-        .def(py::init<const std::string&, std::string, std::optional<int>, double, const py::kwargs&>(),
+        .def(py::init([](const std::string& mission, const std::string& detector, std::optional<int> laps,
+                         double max_age_s, double step_m, double smoothing_m, double max_gap_m,
+                         double default_width_m, const py::kwargs& given) {
+                 return std::make_unique<PlannerObject>(
+                     PlannerOptions{mission_named(mission),
+                                    detector,
+                                    detector_options(detector, given),
+                                    laps,
+                                    {step_m, smoothing_m, max_gap_m, default_width_m},
+                                    max_age_s});
+             }),
              py::arg("mission") = "trackdrive", py::arg("detector") = "front-warm",
-             py::arg("laps") = py::none(), py::kw_only(), py::arg("max_age_s") = PlannerOptions{}.max_age_s)
+             py::arg("laps") = py::none(), py::kw_only(), py::arg("max_age_s") = PlannerOptions{}.max_age_s,
+             py::arg("step_m") = DrivableOptions{}.step_m,
+             py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
+             py::arg("max_gap_m") = DrivableOptions{}.max_gap_m,
+             py::arg("default_width_m") = DrivableOptions{}.default_width_m)
         .def(
             "update",
             [](PlannerObject& planner, const py::object& cones, const py::object& pose,
@@ -240,7 +249,8 @@ ids : (N,) array_like of int, optional
     Distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised by
     its place.
 colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
-    As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both sides of the lane are the start line.
+    As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both sides of the lane are
+    the start line, big ones before others.
 time_limit_ms : float or None
     Of the detector, wall clock [ms]; None for no limit.
 confidences : (N,) array_like of float, optional

@@ -15,6 +15,7 @@ from ._core import (
     Answer,
     Boundaries,
     Detector,
+    DrivableLane,
     Lane,
     Plan,
     Planner,
@@ -48,12 +49,13 @@ class Color(IntEnum):
     unknown = 0
     blue = 1
     yellow = 2
-    orange = 3
+    orange = 3  # says nothing of the size
+    big_orange = 4
 
 
-for _public in (Answer, Boundaries, Detector, Lane, Plan, Planner, RldSolution, Scene, Score, Track, generate_scenes,
-                load_tracks, methods, read_boundaries, read_lanes, read_scenes, rld_parameters, score, solve_rld,
-                write_boundaries, write_lanes, write_scenes):
+for _public in (Answer, Boundaries, Detector, DrivableLane, Lane, Plan, Planner, RldSolution, Scene, Score, Track,
+                generate_scenes, load_tracks, methods, read_boundaries, read_lanes, read_scenes, rld_parameters, score,
+                solve_rld, write_boundaries, write_lanes, write_scenes):
     _public.__module__ = "conelane"
 del _public
 
@@ -62,6 +64,7 @@ __all__ = [
     "Boundaries",
     "Color",
     "Detector",
+    "DrivableLane",
     "Lane",
     "NO_ID",
     "Plan",

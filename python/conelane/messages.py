@@ -134,6 +134,7 @@ _EUFS_LIST_OF = {
     Color.blue: "blue_cones",
     Color.yellow: "yellow_cones",
     Color.orange: "orange_cones",
+    Color.big_orange: "big_orange_cones",
     Color.unknown: "unknown_color_cones",
 }
 
@@ -187,7 +188,7 @@ def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
     cones : (N, 2) array_like of float
         Positions [m].
     colors : (N,) array_like of str or int, optional
-        As `Detector.detect` takes them; orange cones become small orange ones.
+        As `Detector.detect` takes them; cones that are orange and not big_orange become small ones.
     covariances : (N, 2, 2) or (N, 4) array_like of float, optional
         Row by row [m^2]; by default 0.
 
@@ -218,7 +219,7 @@ def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
 
 
 _FS_COLORS = [Color.blue, Color.yellow, Color.orange, Color.orange, Color.unknown]
-_FS_CODE_OF = {Color.blue: 0, Color.yellow: 1, Color.orange: 3, Color.unknown: 4}
+_FS_CODE_OF = {Color.blue: 0, Color.yellow: 1, Color.big_orange: 2, Color.orange: 3, Color.unknown: 4}
 
 
 def from_fs_track(message: Any) -> Cones:
@@ -270,7 +271,7 @@ def to_fs_track(cones: ArrayLike, colors: Optional[ArrayLike] = None) -> Dict[st
 _PACSIM_CLASSES = 7
 _PACSIM_COLORS = {0: Color.unknown, 2: Color.blue, 3: Color.yellow, 4: Color.orange, 5: Color.orange}
 _PACSIM_SURE = 1e-9  # how far the probability of a class may be below 1 that counts as a label
-_PACSIM_CLASS_OF = {Color.unknown: 0, Color.blue: 2, Color.yellow: 3, Color.orange: 4}
+_PACSIM_CLASS_OF = {Color.unknown: 0, Color.blue: 2, Color.yellow: 3, Color.orange: 4, Color.big_orange: 5}
 
 
 def _of_pacsim_classes(probabilities: FloatArray) -> List[float]:
@@ -356,7 +357,7 @@ def to_pacsim(cones: ArrayLike, colors: Optional[ArrayLike] = None, confidences:
     cones : (N, 2) array_like of float
         Positions [m].
     colors : (N,) array_like of str or int, optional
-        As `Detector.detect` takes them; orange cones become small orange ones.
+        As `Detector.detect` takes them; cones that are orange and not big_orange become small ones.
     confidences : (N,) array_like of float, optional
         By default 1.
     ids : (N,) array_like of int, optional

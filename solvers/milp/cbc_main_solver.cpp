@@ -5,6 +5,7 @@
 #include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/invented_point.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
+#include "solvers/milp/detail/own_process.hpp"
 
 #include <algorithm>
 #include <array>
@@ -46,15 +47,18 @@ class CbcMainSession : public MilpSession {
             report.stopped_by = StopReason::time;
             return report;
         }
-        detail::with_std_errors([&] {
-            run(limits, true, report);
-            // On infeasible programs, the preprocessing of CBC 2.10.8 may return an invalid solution.
-            if (verdict_on(report) != detail::PointVerdict::search_anew) return;
-            run(limits, false, report);
-            if (verdict_on(report) == detail::PointVerdict::search_anew)
-                report.message = "CBC returned a point that violates rows";
+        // Assertions of Clp 1.17 fail on some programs, and end the process.
+        return detail::in_own_process([&] {
+            detail::with_std_errors([&] {
+                run(limits, true, report);
+                // On infeasible programs, the preprocessing of CBC 2.10.8 may return an invalid solution.
+                if (verdict_on(report) != detail::PointVerdict::search_anew) return;
+                run(limits, false, report);
+                if (verdict_on(report) == detail::PointVerdict::search_anew)
+                    report.message = "CBC returned a point that violates rows";
+            });
+            return report;
         });
-        return report;
     }
 
     void add_rows(std::span<const ProgramRow> rows) override {

@@ -103,7 +103,7 @@ def parameters_page(root, fields):
             lines.append(f"| `{key}` | {value} | " + " | ".join(values) + " |")
     for name in ("delaunay-beam", "astar-lane"):
         lines += ["", f"## {name}", "", f"Tuned by `conelane tune-method {name}`; the default is the shipped value.", ""] + number_table(name)
-    lines += ["", "## Options of the C++ library", "", "Units are in the names: `_ms`, `_m`, `_s`. Python has the same names as keyword arguments.", ""]
+    lines += ["", "## Options of the C++ library", "", "Units are in the names: `_ms`, `_m`, `_s`. Python has the same names as keyword arguments; the values of `drivable` are given to `Planner` itself.", ""]
     for struct, header, what in STRUCTS:
         lines += [f"### {struct}", "", f"[{os.path.basename(header)}](../{header}): {what}.", "", "| option | type | default | meaning |", "| --- | --- | --- | --- |"]
         for kind, name, default, meaning in members_of(root, struct, header):

@@ -5,9 +5,11 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph.hpp"
+#include "tests/support/printers.hpp"
 #include "tests/support/random_scenes.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +57,13 @@ TEST_P(ModelUpdate, EqualsANewProgram) {
 
 INSTANTIATE_TEST_SUITE_P(Formulations, ModelUpdate, testing::Values(Formulation::tight, Formulation::paper),
                          [](const auto& test) { return std::string(to_string(test.param)); });
+
+TEST(FailedExpectations, PrintWhatTheyCompare) {
+    EXPECT_EQ(testing::PrintToString(std::optional(LaneGraph{{{0, 1}, {1, 2}}})), "(edges 0-1 1-2)");
+    EXPECT_EQ(testing::PrintToString(Lane{{1, 2}, {-3}, true}), "closed, left 1 2, right -3");
+    EXPECT_EQ(testing::PrintToString(LaneStatus::stopped), "stopped");
+    EXPECT_EQ(testing::PrintToString(MergedCone{4, 7}), "4 into 7");
+}
 
 TEST(MapByConeId, FindsConesAgainAndDropsMissingOnes) {
     Scene before;

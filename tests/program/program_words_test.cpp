@@ -54,6 +54,23 @@ TEST_F(Words, ACountThatIsNotAWholeNumberIsRefused) {
     expect_refused("study growth --scenes s.scenes.jsonl --sizes 2.5", {"--sizes: '2.5'"});
 }
 
+TEST_F(Words, AValueBehindAnOptionOfOtherValuesIsRefused) {
+    for (const char* between :
+         {"--warm-start", "--limit 3", "--limit=3", "--sizes 12", "--formulations tight"}) {
+        const std::string option = std::string(between).substr(0, std::string(between).find_first_of(" ="));
+        expect_refused("study backends --scenes s.scenes.jsonl --solvers path-pair " + std::string(between) +
+                           " exec:mine=./mine",
+                       {option + ": does not take 'exec:mine=./mine'", "directly behind its name"});
+    }
+    expect_refused("compare --methods clc --tracks generated:circle exec:a=b --out r",
+                   {"--tracks: does not take 'exec:a=b'"});
+}
+
+TEST_F(Words, AFolderThatIsMissingIsNamed) {
+    expect_refused("study formulations --scenes s.scenes.jsonl --out none/such.jsonl",
+                   {"--out: none/such.jsonl: cannot be written", "make the folder 'none' first"});
+}
+
 TEST_F(Words, AnUnknownCommandListsTheCommands) {
     expect_refused("study nope", {"study: there is no 'nope'", "optimality", "front-beam", "memory"});
     expect_refused("study nope --scenes s.scenes.jsonl --out x", {"study: there is no 'nope'", "optimality"});
@@ -100,7 +117,8 @@ TEST_F(Words, HelpOfEveryCommandFitsAHundredColumns) {
 
 /// Progress is shown on a terminal on stderr; files, pipes and standard output get none.
 TEST_F(Words, LongWorkSaysOnATerminalHowMuchTimeIsLeft) {
-    if (std::system("script --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no program `script`";
+    if (std::system("script -qec true /dev/null >/dev/null 2>&1 </dev/null") != 0)
+        GTEST_SKIP() << "no program `script`, or no terminals for it (/dev/pts)";
     const std::string scenes = "scenes --tracks generated:long_lap --fp 0,0.1,0.3,0.5 --every 0.15 --out ";
     const std::string within = "cd " + path("").string() + " && ";
     const std::string on_terminal = within + "script -qec '" + conelane_program() + " " + scenes +

@@ -193,8 +193,8 @@ class Refusals(unittest.TestCase):
         self.check("covariances[0]: must be positive semidefinite",
                    covariances=np.tile([[1.0, 2.0], [2.0, 1.0]], (8, 1, 1)))
         self.check("colors: has dtype float64, not names or codes of colours", colors=np.zeros(8))
-        self.check("colors[0]: 'red' is not a colour; colours are unknown, blue, yellow, orange", colors=["red"] * 8)
-        self.check("colors[2]: 7 is not a colour; colours are 0 to 3: unknown, blue, yellow, orange",
+        self.check("colors[0]: 'red' is not a colour; colours are unknown, blue, yellow, orange, big_orange", colors=["red"] * 8)
+        self.check("colors[2]: 7 is not a colour; colours are 0 to 4: unknown, blue, yellow, orange, big_orange",
                    colors=[0, 0, 7, 0, 0, 0, 0, 0])
 
     def test_names_and_options(self):

@@ -83,7 +83,7 @@ def scene_arguments(random):
     if random.random() < 0.3:
         arguments["ids"] = disguised(random, random.integers(-2**63, 2**63 - 1, count))
     if random.random() < 0.3:
-        arguments["colors"] = disguised(random, random.integers(0, 5 if random.random() < 0.1 else 4, count))
+        arguments["colors"] = disguised(random, random.integers(0, 6 if random.random() < 0.1 else 5, count))
     if random.random() < 0.3:
         arguments["confidences"] = disguised(random, random.random(count))
     return arguments

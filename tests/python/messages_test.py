@@ -178,6 +178,12 @@ class All(unittest.TestCase):
             self.assertEqual((cones.cones.shape, cones.colors.shape), ((0, 2), (0,)))
             self.assertEqual(conelane.Detector("clc").detect(**cones._asdict(), pose=(0, 0, 0)).status, "none")
 
+    def test_big_orange_cones_can_be_said(self):
+        place, color = [[1, 2]], ["big_orange"]
+        self.assertEqual(len(messages.to_eufs(place, color)["big_orange_cones"]), 1)
+        self.assertEqual(messages.to_fs_track(place, [Color.big_orange])["track"][0]["color"], 2)
+        self.assertEqual(messages.to_pacsim(place, color)["detections"][0]["class_probabilities"], [0, 0, 0, 0, 0, 1, 0])
+
     def test_what_becomes_no_message(self):
         for to in (messages.to_eufs, messages.to_fs_track, messages.to_pacsim):
             with self.assertRaisesRegex(ValueError, r"not \(N, 2\)"):

@@ -90,6 +90,32 @@ class Straight(unittest.TestCase):
                 self.assertTrue((answer.left_ids < 0).all())
             self.assertIsNone(planner.course())
 
+    def test_a_plan_has_the_options_and_the_lane_of_cpp(self):
+        missing = np.isin(np.arange(len(self.cones)), [2])  # a cone of the left boundary
+        cones = self.cones[~missing & (self.cones[:, 0] < 20.0)]
+        smooth, rough = (conelane.Planner(step_m=1.0, smoothing_m=m, max_gap_m=g) for m, g in ((3.0, 5.5), (0.25, 9.0)))
+        bend = np.column_stack([cones[:, 0], cones[:, 1] + 0.02 * cones[:, 0] ** 2])
+        lanes = [planner.update(bend, (0, 0, 0), 0.0, time_limit_ms=None).lane for planner in (smooth, rough)]
+        np.testing.assert_allclose(np.diff(lanes[0].centre_line[:, 0]), 1.0)
+        self.assertFalse(np.allclose(lanes[0].centre_line[:10, 4], lanes[1].centre_line[:10, 4], atol=1e-3))
+        self.assertFalse(lanes[0].closed or lanes[0].left_inferred or lanes[0].right_inferred)
+        self.assertEqual(([side for side, _, _ in lanes[0].bridged], lanes[1].bridged), (["left"], []))
+        _, start, end = lanes[0].bridged[0]
+        self.assertTrue(5.5 < end - start < 9.0)
+        self.assertGreaterEqual(lanes[0].length_m, lanes[0].trusted_m)
+        for key in ("step_m", "smoothing_m", "max_gap_m", "default_width_m"):
+            with self.assertRaisesRegex(ValueError, f"{key}: must be"):
+                conelane.Planner(**{key: -1.0})
+
+    def test_one_boundary_alone_infers_the_other(self):
+        right = [[x, -1.5] for x in (2, 5, 8, 11, 14)]
+        plan = conelane.Planner(default_width_m=5.0).update(right, (0, 0, 0), 0.0, time_limit_ms=None)
+        self.assertTrue(plan.lane.left_inferred)
+        np.testing.assert_allclose(plan.lane.centre_line[:, 5:].sum(axis=1), 5.0, atol=1e-6)
+        lane = conelane.Detector("front").detect(right, (0, 0, 0))
+        self.assertEqual((lane.drivable().left_inferred, lane.drivable().right_inferred), (True, False))
+        np.testing.assert_array_equal(lane.drivable(default_width_m=4.0).centre_line, lane.centre_line(usual_width_m=4.0))
+
     def test_ids_may_be_missing_one_by_one(self):
         planner = conelane.Planner()
         some = np.where(self.ids % 2 == 0, self.ids, conelane.NO_ID)

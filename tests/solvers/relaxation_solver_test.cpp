@@ -5,7 +5,7 @@
 #include "conelane/relaxation_solvers.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
-#include "tests/support/print_status.hpp"
+#include "tests/support/printers.hpp"
 #include "tests/support/random_scenes.hpp"
 
 #include <memory>

@@ -3,13 +3,18 @@
 
 #include "conelane/lane_graph_problem.hpp"
 #include "model/formulation_parts.hpp"
+#include "solvers/milp/detail/own_process.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/random_scenes.hpp"
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -72,6 +77,50 @@ TEST_P(Interrupt, IsSeenByTheProgramsHandler) {
 INSTANTIATE_TEST_SUITE_P(Cbc, Interrupt, testing::Values("cbc", "cbc-main"), [](const auto& test) {
     return std::string(test.param) == "cbc" ? "cbc" : "cbc_main";
 });
+
+/// What a library does to its process is an error of the solve.
+TEST(OwnProcess, ReportsHowItEnded) {
+    const auto message = [](const std::function<void()>& fate) {
+        const MilpReport report = detail::in_own_process([&] {
+            fate();
+            MilpReport unharmed;
+            unharmed.status = SolveStatus::optimal;
+            return unharmed;
+        });
+        EXPECT_EQ(report.status, SolveStatus::error);
+        EXPECT_TRUE(report.point.empty());
+        return report.message;
+    };
+    const auto fail_assertion = [] {
+        std::fputs("loading\nclp.cpp:1: Assertion `lowerValue <= upperValue' failed.\n", stderr);
+        std::abort();
+    };
+    EXPECT_EQ(message(fail_assertion), "the library ended its process by signal " + std::to_string(SIGABRT) +
+                                           ": clp.cpp:1: Assertion `lowerValue <= upperValue' failed.");
+    EXPECT_EQ(message([] { (void)raise(SIGKILL); }), "the library ended its process by signal 9");
+    EXPECT_EQ(message([] { throw std::runtime_error("no basis"); }), "no basis");
+    EXPECT_THROW(message([] { throw std::bad_alloc(); }), std::bad_alloc);
+}
+
+TEST(OwnProcess, GivesTheWholeReport) {
+    MilpReport wanted;
+    wanted.status = SolveStatus::feasible;
+    wanted.stopped_by = StopReason::time;
+    wanted.bound = -2.5;
+    wanted.nodes = 7;
+    wanted.message = "late";
+    wanted.point.assign(100'000, 0.25);  // more than a pipe holds
+    const MilpReport report = detail::in_own_process([&] {
+        std::fputs("a warning\n", stderr);
+        return wanted;
+    });
+    EXPECT_EQ(report.status, wanted.status);
+    EXPECT_EQ(report.stopped_by, wanted.stopped_by);
+    EXPECT_EQ(report.point, wanted.point);
+    EXPECT_EQ(report.bound, wanted.bound);
+    EXPECT_EQ(report.nodes, wanted.nodes);
+    EXPECT_EQ(report.message, wanted.message);
+}
 
 /// A scene on which CBC's feasibility pump always fails an assertion of Clp.
 TEST(CbcMain, SolvesWhatTheFeasibilityPumpAbortedOn) {

@@ -12,13 +12,6 @@
 
 namespace conelane {
 
-inline void PrintTo(PlanState state, std::ostream* out) {
-    *out << to_string(state);
-}
-inline void PrintTo(Mission mission, std::ostream* out) {
-    *out << to_string(mission);
-}
-
 namespace tests {
 
 inline constexpr std::array<std::string_view, 6> kPhases{"approach", "right 1", "right 2",

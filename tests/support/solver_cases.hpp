@@ -2,7 +2,7 @@
 
 #include "conelane/formulation.hpp"
 #include "solvers/registry.hpp"
-#include "tests/support/print_status.hpp"
+#include "tests/support/printers.hpp"
 
 #include <ostream>
 #include <vector>

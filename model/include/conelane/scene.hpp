@@ -25,8 +25,12 @@ struct Pose {
     [[nodiscard]] double left_m(const Point& point) const;
 };
 
-enum class ConeColor { unknown, blue, yellow, orange };
+/// `orange` says nothing of the size; the planner takes the start line from `big_orange` cones first.
+enum class ConeColor { unknown, blue, yellow, orange, big_orange };
 [[nodiscard]] std::string_view to_string(ConeColor color);
+[[nodiscard]] constexpr bool is_orange(ConeColor color) {
+    return color == ConeColor::orange || color == ConeColor::big_orange;
+}
 
 /// How likely a cone is of each class, each in [0, 1], all together 1.
 struct ColorProbabilities {

@@ -157,6 +157,18 @@ TEST_F(Laps, AreCountedAtTheGateOfOrangeConesWhereColorsSayIt) {
     EXPECT_NEAR(counted[1], 2.0 * course.lap_m + 0.3, 0.8);
 }
 
+/// Small orange cones stand nearer, as where the course is closed between two events.
+TEST_F(Laps, AreCountedAtTheGateOfBigOrangeConesBeforeOthers) {
+    DrivenCourse course = tests::oval(3);
+    std::ranges::for_each(course.cones.begin(), course.cones.begin() + 2,
+                          [](Cone& cone) { cone.color = ConeColor::big_orange; });
+    std::ranges::for_each(course.cones.end() - 2, course.cones.end(),
+                          [](Cone& cone) { cone.color = ConeColor::orange; });
+    const auto counted = drive(course, -7.0, 1.2 * course.lap_m, true);
+    ASSERT_EQ(counted.size(), 1U);
+    EXPECT_NEAR(counted[0], course.lap_m + 0.3, 0.8);
+}
+
 TEST_F(Laps, StandingOrRockingAtTheLineCountsNothing) {
     for (int i = 0; i < 400; ++i) {
         counter_.observe({{0.3 * std::sin(0.5 * i), 0.05 * std::cos(3.0 * i)}, 0.0}, DrivableLane{}, cones_);

@@ -55,7 +55,8 @@ TEST_F(AtomicFileTest, FollowsSymbolicLinksAndKeepsPermissions) {
 
 TEST_F(AtomicFileTest, NamesTargetsThatCannotBeWritten) {
     EXPECT_EQ(error_of([&] { AtomicFile output(path("absent/f")); }),
-              "absent/f: cannot be written: No such file or directory");
+              "absent/f: cannot be written: No such file or directory; make the folder '" +
+                  path("absent").string() + "' first");
     fs::create_directory(path("folder"));
     EXPECT_EQ(error_of([&] { AtomicFile output(path("folder")); }), "folder: is a folder, not a file");
     EXPECT_EQ(error_of([&] { AtomicFile output(path("new/")); }), "new/: cannot be written: Is a directory");

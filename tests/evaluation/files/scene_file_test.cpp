@@ -95,7 +95,7 @@ TEST_F(SceneFileTest, ProbabilitiesOfColorsStandBesideTheLabelOrGiveIt) {
         R"({"id": 1, "x": 1, "y": 2, "color": "yellow", "color_probabilities": [0.25, 0.5, 0.125, 0.125, 0]},)"
         R"({"id": 2, "x": 1, "y": 3, "color_probabilities": [0, 0.1, 0.3, 0.25, 0.35]},)"
         R"({"id": 3, "x": 1, "y": 4, "color_probabilities": [0, 0.5, 0.5, 0, 0]},)"
-        R"({"id": 4, "x": 1, "y": 5, "color": "blue"})"));
+        R"({"id": 4, "x": 1, "y": 5, "color": "blue"}, {"id": 5, "x": 2, "y": 5, "color": "big_orange"})"));
     const std::vector<AnnotatedScene> read = read_scenes(file);
     const std::vector<Cone>& cones = read.front().scene.cones;
     EXPECT_EQ(cones[0].color, ConeColor::yellow);
@@ -104,7 +104,10 @@ TEST_F(SceneFileTest, ProbabilitiesOfColorsStandBesideTheLabelOrGiveIt) {
     EXPECT_EQ(cones[2].color, ConeColor::unknown);  // blue and yellow are equally probable
     EXPECT_FALSE(cones[3].color_probabilities.has_value());
     EXPECT_EQ(cones[3].probabilities(), (ColorProbabilities{0.0, 1.0, 0.0, 0.0, 0.0}));
+    EXPECT_EQ(cones[4].color, ConeColor::big_orange);
+    EXPECT_EQ(cones[4].probabilities(), (ColorProbabilities{0.0, 0.0, 0.0, 0.0, 1.0}));
     write_scenes(path("out"), read);
+    EXPECT_EQ(read_scenes(path("out")).front().scene.cones[4].color, ConeColor::big_orange);
     EXPECT_THAT(text_of(path("out")),
                 testing::HasSubstr(R"("color":"yellow","confidence":1.0,)"
                                    R"("color_probabilities":[0.25,0.5,0.125,0.125,0.0]})"));
@@ -252,9 +255,9 @@ TEST_F(SceneFileTest, NamesBadCones) {
     EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": 2, "confidence": -0.1})")),
               "s.jsonl:1: cones[0].confidence: must be in [0, 1]");
     EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": 2, "color": "green"})")),
-              "s.jsonl:1: cones[0].color: must be one of blue, yellow, orange, unknown");
+              "s.jsonl:1: cones[0].color: must be one of blue, yellow, orange, big_orange, unknown");
     EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": 2, "color": 1})")),
-              "s.jsonl:1: cones[0].color: must be one of blue, yellow, orange, unknown");
+              "s.jsonl:1: cones[0].color: must be one of blue, yellow, orange, big_orange, unknown");
 }
 
 TEST_F(SceneFileTest, NamesBadGroundTruth) {

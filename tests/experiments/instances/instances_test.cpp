@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -202,6 +203,27 @@ TEST_F(Instances, AnUnfinishedProgramIsOpen) {
     for (const auto& [name, known] : read_solu(path("made") / "conelane.solu")) {
         EXPECT_NE(known.mark, "=opt=") << name;
     }
+}
+
+/// Path-pair needs less than a millisecond, CBC more: neither count may call the same programs open and not
+/// open.
+TEST_F(Instances, OpenProgramsAreCountedInOneWay) {
+    const Outcome outcome =
+        run("instances --tracks generated:curvy --fp 0.5 --every 1000 --nearest 12 --seed 3 --time-limit 2 "
+            "--out made");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    std::size_t of_two = 0, of_classes = 0, both = 0, none = 0, one = 0, left_out = 0, easy = 0, hard = 0;
+    ASSERT_EQ(
+        std::sscanf(outcome.output.c_str(),
+                    "2 programs in made: %zu optima and %zu infeasible by both path-pair and CBC, %zu proven "
+                    "by one of them alone, %zu open; %zu left out, too large or without an edge classes: %zu "
+                    "easy, %zu hard, %zu open",
+                    &both, &none, &one, &of_two, &left_out, &easy, &hard, &of_classes),
+        8)
+        << outcome.output;
+    EXPECT_EQ(of_two, of_classes);
+    EXPECT_EQ(both + none + one + of_two, 2U);
+    EXPECT_EQ(easy + hard + of_classes, 2U);
 }
 
 TEST_F(Instances, TheProgramWritesFilesThatUnpack) {

@@ -587,6 +587,21 @@ class ReportPage(unittest.TestCase):
             self.assertEqual((sweep.returncode, sweep.stderr), (0, ""))
             self.assertNotIn("arning", sweep.stdout)
 
+    def test_studies_alone_make_a_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = os.path.join(folder, "page.html")
+            for name in ("backends.jsonl", "growth.jsonl"):
+                shutil.copy(os.path.join(RESULTS, name), folder)
+                done = report(folder, page, "--png", os.path.join(folder, "pictures"))
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                with open(page, encoding="utf-8") as stream:
+                    text = stream.read()
+                made = Page(text)
+                self.assertEqual((made.wrong, made.open, made.outside), ([], [], []))
+                self.assertLessEqual({"exactness", "protocol", "backends", "solver-measures"}, set(made.ids))
+                self.assertNotIn("comparison", made.ids)
+            self.assertIn("By the number of cones", text)
+
     def test_without_scenes_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             copy = os.path.join(folder, "copy")

@@ -61,6 +61,28 @@ TEST(RefutedClaims, AreThoseThatACheckedLaneGraphContradicts) {
     EXPECT_THAT(errors_among(rows).lines(), testing::SizeIs(4));
 }
 
+TEST(RefutedClaims, AndErrorsCountInEveryOrder) {
+    const std::vector<AnnotatedScene> scenes(1, straight_scene());
+    std::vector<BackendRow> rows{row_of(scenes[0], "a", SolveStatus::optimal, -5.0, 1.0),
+                                 row_of(scenes[0], "b", SolveStatus::optimal, -5.0, 1.0),
+                                 row_of(scenes[0], "b", SolveStatus::optimal, -4.0, 1.0, 1),
+                                 row_of(scenes[0], "b", SolveStatus::error, {}, 1.0, 2)};
+    mark_refuted_claims(rows);
+    std::istringstream table(backend_table(rows));
+    std::vector<std::string> words(8);
+    while (words[1] != "b" && std::getline(table, words[0])) {
+        std::istringstream line(words[0]);
+        for (std::string& word : words) line >> word;
+    }
+    // Size and backend; scenes, optimal, infeasible, unproven, errors, refuted.
+    EXPECT_THAT(words, ElementsAre("6", "b", "1", "1", "0", "0", "1", "1"));
+    const std::vector<BackendSummary> summaries = measures_of(rows, kLimit_ms).summaries;
+    ASSERT_EQ(summaries.size(), 2U);
+    EXPECT_EQ(summaries[1].runs, 1U) << "the other backend has no other orders";
+    EXPECT_EQ(summaries[1].refuted, 1U);
+    EXPECT_EQ(summaries[1].errors, 2U);
+}
+
 /// Two backends on two scenes in two orders; "b" fails once and is refuted once.
 TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     const std::vector<AnnotatedScene> scenes(2, straight_scene());
