@@ -6,12 +6,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

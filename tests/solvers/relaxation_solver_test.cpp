@@ -7,12 +7,7 @@
 #include "solvers/relaxation/edge_relaxation.hpp"
 #include "tests/support/print_status.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

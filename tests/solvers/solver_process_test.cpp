@@ -5,16 +5,12 @@
 #include "model/formulation_parts.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <memory>
-#include <string>
 #include <thread>
-#include <utility>
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace conelane {
