@@ -9,18 +9,9 @@
 #include "tests/support/failing_allocations.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cstdint>
-#include <functional>
-#include <memory>
 #include <new>
-#include <string>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -145,13 +136,8 @@ std::vector<std::string> detector_names() {
     return names;
 }
 
-std::string test_name(std::string name) {
-    std::ranges::replace(name, '-', '_');
-    return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Detectors, DetectorMemory, testing::ValuesIn(detector_names()),
-                         [](const auto& test) { return test_name(test.param); });
+                         [](const auto& test) { return case_name(test.param); });
 
 class SolverMemory : public testing::TestWithParam<const RldSolverEntry*> {};
 
@@ -204,7 +190,7 @@ std::vector<const RldSolverEntry*> solvers() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Core, SolverMemory, testing::ValuesIn(solvers()),
-                         [](const auto& test) { return test_name(std::string(test.param->name)); });
+                         [](const auto& test) { return case_name(test.param->name); });
 
 }  // namespace
 }  // namespace conelane

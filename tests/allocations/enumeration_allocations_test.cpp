@@ -5,14 +5,7 @@
 #include "graph_search/weights/shipped_weights.hpp"
 #include "tests/support/counted_allocations.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <algorithm>
-#include <memory>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

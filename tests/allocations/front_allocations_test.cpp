@@ -2,10 +2,7 @@
 #include "tests/support/counted_allocations.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

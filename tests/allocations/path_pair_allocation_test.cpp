@@ -3,14 +3,9 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <new>
-
-#include <gtest/gtest.h>
 
 namespace {
 

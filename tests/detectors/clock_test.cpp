@@ -11,19 +11,10 @@
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/slowness.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <numbers>
-#include <string_view>
-#include <vector>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <malloc.h>
 
 namespace conelane {

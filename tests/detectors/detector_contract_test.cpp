@@ -7,24 +7,10 @@
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <set>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -56,18 +42,6 @@ Scene straight(int cones_a_side, const Point& car = {0.0, 0.0}) {
     for (int i = 0; i < cones_a_side; ++i) {
         scene.cones.push_back({2 * i, car + Point(1.0 + 3.2 * i, 1.8)});
         scene.cones.push_back({2 * i + 1, car + Point(1.2 + 3.2 * i, -1.8)});
-    }
-    return scene;
-}
-
-/// Cones anywhere in a square; the car is at the middle of one side.
-Scene strewn(std::size_t cones, double side_m) {
-    boost::random::mt19937_64 random(7);
-    boost::random::uniform_real_distribution<> along(0.0, side_m);
-    Scene scene;
-    for (std::size_t i = 0; i < cones; ++i) {
-        const double x_m = along(random);
-        scene.cones.push_back({static_cast<ConeId>(i), {x_m, along(random) - side_m / 2.0}});
     }
     return scene;
 }
@@ -293,7 +267,7 @@ TEST_P(DetectorContract, LanesAreTheSameFarFromTheOrigin) {
         EXPECT_EQ(there.status, here.status);
         EXPECT_EQ(there.lane, here.lane);
     }
-    EXPECT_NE(detect(strewn(10, 1e6)).status, LaneStatus::error);
+    EXPECT_NE(detect(tests::strewn_scene(10, 1e6, 1e6)).status, LaneStatus::error);
 }
 
 TEST_P(DetectorContract, HugeLimitsNeverExpireAndNegativeOnesHaveExpired) {
@@ -339,7 +313,7 @@ TEST_P(DetectorContract, ALimitNeverMakesAnAnswerWrong) {
 
 TEST_P(DetectorContract, AnAnswerDependsOnTheSceneAlone) {
     const auto used = make();
-    const Scene large = strewn(300, 30.0);
+    const Scene large = tests::strewn_scene(300, 30.0, 30.0);
     int found = 0;
     for (const Scene& scene : random_scenes()) {
         SCOPED_TRACE(scene.id);
@@ -387,7 +361,7 @@ TEST_P(DetectorContract, TheTimeLimitHoldsInACrowd) {
     const auto detector = make();
     for (const double side_m : {50.0, 10.0}) {
         SCOPED_TRACE(side_m);
-        const Scene crowd = strewn(2000, side_m);
+        const Scene crowd = tests::strewn_scene(2000, side_m, side_m);
         for (const double limit_ms : {5.0, 50.0}) {
             LaneAnswer answer;
             EXPECT_LT(
@@ -419,21 +393,13 @@ TEST_P(DetectorContract, InstancesServeAThreadEach) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Detectors, DetectorContract, testing::ValuesIn(names()), [](const auto& test) {
-    std::string name = test.param;
-    std::ranges::replace(name, '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Detectors, DetectorContract, testing::ValuesIn(names()),
+                         [](const auto& test) { return case_name(test.param); });
 
 TEST(Detectors, AreKnownByNamesOfTheirOwnThatAnErrorLists) {
     const std::vector<std::string> all = names();
     EXPECT_EQ(std::set(all.begin(), all.end()).size(), all.size());
-    std::string message;
-    try {
-        (void)make_detector("magic");
-    } catch (const InvalidInput& error) {
-        message = error.what();
-    }
+    const std::string message = refusal([] { (void)make_detector("magic"); });
     for (const DetectorInfo& detector : detectors()) {
         EXPECT_THAT(message, HasSubstr(std::string(detector.name)));
         EXPECT_FALSE(detector.description.empty());

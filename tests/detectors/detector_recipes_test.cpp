@@ -5,18 +5,7 @@
 #include "experiments/comparison/known_detectors.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <memory>
-#include <numbers>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -101,11 +90,8 @@ std::vector<const KnownDetector*> all() {
     return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Detectors, DetectorRecipes, testing::ValuesIn(all()), [](const auto& test) {
-    std::string name(test.param->name);
-    std::ranges::replace(name, '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Detectors, DetectorRecipes, testing::ValuesIn(all()),
+                         [](const auto& test) { return case_name(test.param->name); });
 
 TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParametersWereSet) {
     using experiments::training_courses;

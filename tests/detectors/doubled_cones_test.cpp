@@ -9,19 +9,7 @@
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <memory>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -149,11 +137,7 @@ TEST_P(DoublesOfFront, TakeNoTrustAway) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Front, DoublesOfFront, testing::Values("front", "front-warm"),
-                         [](const auto& detector) {
-                             std::string words = detector.param;
-                             std::ranges::replace(words, '-', '_');
-                             return words;
-                         });
+                         [](const auto& detector) { return case_name(detector.param); });
 
 std::vector<std::string> all_names() {
     std::vector<std::string> names;
@@ -161,11 +145,8 @@ std::vector<std::string> all_names() {
     return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()), [](const auto& detector) {
-    std::string words = detector.param;
-    std::ranges::replace(words, '-', '_');
-    return words;
-});
+INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()),
+                         [](const auto& detector) { return case_name(detector.param); });
 
 TEST(DoubledCones, ASceneWithoutThemStaysUnchanged) {
     DoubledCones doubles(kDoubledCone_m);

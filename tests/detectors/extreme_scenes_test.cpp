@@ -6,15 +6,9 @@
 #include "conelane/solve_scene.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <string>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -92,6 +86,17 @@ TEST(ExtremeScenes, EdgesAreAtLeast1em100Long) {
     }
 }
 
+/// The report of each exact solver, by its name.
+std::map<std::string, RldReport> exact_reports(const Scene& scene, const RldParameters& parameters) {
+    std::map<std::string, RldReport> reports;
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        if (!entry.exact) continue;
+        reports[std::string(entry.name)] =
+            solve_scene(*entry.make(Formulation::tight), scene, parameters, {kLimit_ms}).report;
+    }
+    return reports;
+}
+
 /// Found by cross-check: for this infeasible program, CBC's preprocessing returns a point.
 TEST(ExtremeScenes, AnInventedPointOfCbcIsNoAnswer) {
     Scene scene;
@@ -101,11 +106,8 @@ TEST(ExtremeScenes, AnInventedPointOfCbcIsNoAnswer) {
                    {2, {-4.04, 5.0428}}};
     RldParameters parameters;
     parameters.pairing = Pairing::paper;
-    for (const RldSolverEntry& entry : rld_solvers()) {
-        if (!entry.exact) continue;
-        const RldReport report =
-            solve_scene(*entry.make(Formulation::tight), scene, parameters, {kLimit_ms}).report;
-        EXPECT_EQ(report.status, SolveStatus::infeasible) << entry.name << ": " << report.message;
+    for (const auto& [name, report] : exact_reports(scene, parameters)) {
+        EXPECT_EQ(report.status, SolveStatus::infeasible) << name << ": " << report.message;
     }
 }
 
@@ -118,40 +120,29 @@ TEST(ExtremeScenes, AnInventedPointOfCbcIsNoAnswer) {
 /// error of 1e-13 weighs as much as a lane: GLPK took the lane of two edges for the best. Each of the four
 /// costs 0.4 - 1.
 TEST(ExtremeScenes, AHugeCostHidesNoBetterLane) {
-    Scene scene;
-    for (const Point& place : {Point(2000, 500), Point(2000, -500), Point(0, -500), Point(0, 500),
-                               Point(4000, 500), Point(4000, -500)}) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
-    }
+    Scene scene =
+        tests::cones_at({{2000, 500}, {2000, -500}, {0, -500}, {0, 500}, {4000, 500}, {4000, -500}});
     RldParameters parameters;
     parameters.d_e = parameters.d_t = parameters.d_h = parameters.d_near = parameters.d_max = 1000.0;
-    for (const RldSolverEntry& entry : rld_solvers()) {
-        if (!entry.exact) continue;
-        const RldReport report =
-            solve_scene(*entry.make(Formulation::tight), scene, parameters, {kLimit_ms}).report;
-        EXPECT_EQ(report.status, SolveStatus::optimal) << entry.name << ": " << report.message;
-        EXPECT_NEAR(report.objective.value_or(0.0), -2.4, 1e-9) << entry.name;
+    for (const auto& [name, report] : exact_reports(scene, parameters)) {
+        EXPECT_EQ(report.status, SolveStatus::optimal) << name << ": " << report.message;
+        EXPECT_NEAR(report.objective.value_or(0.0), -2.4, 1e-9) << name;
     }
 }
 
 /// Two boundaries of a kilometre across the car's way, 10 m apart, are the only lane. The one whose midpoint
 /// is 1.25 m from the car costs 1.2 * (1000 / 1.25)^4, and the other one far less.
 TEST(ExtremeScenes, AnExpensiveLaneIsFoundIfItIsTheOnlyOne) {
-    Scene scene;
-    for (const Point& place : {Point(0.75, 499), Point(0.75, -501), Point(10.75, 499), Point(10.75, -501)})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    Scene scene = tests::cones_at({{0.75, 499}, {0.75, -501}, {10.75, 499}, {10.75, -501}});
     RldParameters parameters;
     parameters.d_e = parameters.d_t = parameters.d_h = parameters.d_max = 1000.0;
     parameters.d_near = 500.0;
     parameters.theta_heading = std::numbers::pi / 2.0;
     const double dear = 1.2 * std::pow(1000.0 / 1.25, 4);
     const double other = 1.2 * std::pow(1000.0 / std::hypot(10.75, 1.0), 4);
-    for (const RldSolverEntry& entry : rld_solvers()) {
-        if (!entry.exact) continue;
-        const RldReport report =
-            solve_scene(*entry.make(Formulation::tight), scene, parameters, {kLimit_ms}).report;
-        EXPECT_EQ(report.status, SolveStatus::optimal) << entry.name << ": " << report.message;
-        EXPECT_NEAR(report.objective.value_or(0.0), dear + other - 2.0, 1e-9 * dear) << entry.name;
+    for (const auto& [name, report] : exact_reports(scene, parameters)) {
+        EXPECT_EQ(report.status, SolveStatus::optimal) << name << ": " << report.message;
+        EXPECT_NEAR(report.objective.value_or(0.0), dear + other - 2.0, 1e-9 * dear) << name;
     }
 }
 

@@ -10,15 +10,7 @@
 #include "graph_search/front/front_evidence.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <algorithm>
-#include <cstddef>
-#include <memory>
-#include <numbers>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -6,20 +6,10 @@
 #include "evaluation/scenes/scene_set.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/no_time_limit.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <tuple>
-#include <utility>
 #include <variant>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -126,11 +116,6 @@ std::vector<std::string> names() {
     return all;
 }
 
-std::string test_name(std::string name) {
-    std::ranges::replace(name, '-', '_');
-    return name;
-}
-
 class DetectorScale : public testing::TestWithParam<std::string> {};
 
 /// The RLD detector alone, without drivable: whether its lanes can be driven depends on metres.
@@ -190,12 +175,12 @@ TEST_P(DetectorScale, AlmostTheSameIsAsGood) {
 
 INSTANTIATE_TEST_SUITE_P(InMetres, DetectorScale,
                          testing::Values("front", "front-warm", "clc", "clc-warm", "clc-paper", "astar-lane"),
-                         [](const auto& test) { return test_name(test.param); });
+                         [](const auto& test) { return case_name(test.param); });
 
 INSTANTIATE_TEST_SUITE_P(Detectors, DetectorMetamorphic,
                          testing::Combine(testing::ValuesIn(names()), testing::ValuesIn(tests::changes())),
                          [](const auto& test) {
-                             return test_name(std::get<0>(test.param)) + "_" +
+                             return case_name(std::get<0>(test.param)) + "_" +
                                     std::string(std::get<1>(test.param).name);
                          });
 

@@ -5,17 +5,7 @@
 #include "conelane/solve_scene.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <array>
-#include <cstddef>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

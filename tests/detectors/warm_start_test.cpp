@@ -5,10 +5,7 @@
 #include "experiments/comparison/known_detectors.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <memory>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -8,6 +8,7 @@
 #include "evaluation/files/search_certificate_file.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
+#include "tests/support/six_cone_lane.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -18,19 +19,8 @@
 namespace conelane::fuzz {
 namespace {
 
-/// Two straight boundaries of three cones; the seeds in corpus/certificates are proofs about them. The
-/// optimum is both whole boundaries, at the cost -4.
-Scene straight_lane() {
-    Scene scene;
-    scene.id = "straight";
-    for (const double y : {1.75, -1.75}) {
-        for (const double x : {1.0, 4.2, 7.4}) {
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
-        }
-    }
-    return scene;
-}
-
+/// The seeds in corpus/certificates are proofs about the lane of six cones. The optimum is both whole
+/// boundaries.
 constexpr double kOptimum = -4.0;
 constexpr double kTolerance = 1e-5;
 
@@ -56,7 +46,7 @@ std::optional<BoundCertificate> certificate_of(const CertificateRecord& record, 
 
 void read_all(std::string_view bytes) {
     static const ScratchFolder folder;
-    static const Scene scene = straight_lane();
+    static const Scene scene = tests::six_cone_lane();
     const auto file = folder.write("input.certificates.jsonl", bytes);
     (void)holds_search_certificates(file);
     answers([&] {

@@ -3,14 +3,7 @@
 #include "conelane/check.hpp"
 
 #include "tests/support/six_cone_lane.hpp"
-
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

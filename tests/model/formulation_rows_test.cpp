@@ -3,35 +3,13 @@
 
 #include "conelane/lane_graph_problem.hpp"
 #include "model/lane_graph_model.hpp"
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <set>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/six_cone_lane.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
 
 using Cones = std::set<std::int32_t>;
-
-/// 0, 1, 3 and 4 are near.
-///     0 ----- 1 ----- 2
-/// car >
-///     3 ----- 4 ----- 5
-Scene straight_lane() {
-    Scene scene;
-    for (const double y : {1.75, -1.75}) {
-        for (const double x : {1.0, 4.2, 7.4})
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
-    }
-    return scene;
-}
 
 const Cones kAll{0, 1, 2, 3, 4, 5};
 const std::vector<Edge> kLane{{0, 1}, {1, 2}, {3, 4}, {4, 5}};
@@ -55,7 +33,7 @@ std::vector<double> point_of(const BinaryProgram& program, const std::vector<Edg
 /// Names of the rows of a family that the edges and inliers violate.
 std::vector<std::string> violated(std::string_view family, const std::vector<Edge>& edges,
                                   const Cones& inliers) {
-    const Scene scene = straight_lane();
+    const Scene scene = tests::six_cone_lane();
     const LaneGraphProblem problem = make_problem(scene, {}, EdgeExtent::all_pairs);
     const LaneGraphModel model(problem, Formulation::paper);
     const BinaryProgram& program = model.program();
@@ -100,7 +78,7 @@ TEST(PaperRows, TwoPathsHaveFourEndpoints) {
 
 /// A written program names a column e by the cone that it comes from and the one where the path ends.
 TEST(TightRows, NearEndpointsAreColumnsThatEndAtANearCone) {
-    const Scene scene = straight_lane();
+    const Scene scene = tests::six_cone_lane();
     const LaneGraphProblem problem = make_problem(scene, {});
     const LaneGraphModel model(problem, Formulation::tight);
     const BinaryProgram& program = model.program();
@@ -119,7 +97,7 @@ TEST(TightRows, NearEndpointsAreColumnsThatEndAtANearCone) {
 
 /// The path from 0 to 1 joins two near cones. The row that forbids it allows the lane, which continues to 2.
 TEST(TightRows, APathBetweenNearConesMayGoOn) {
-    const Scene scene = straight_lane();
+    const Scene scene = tests::six_cone_lane();
     const LaneGraphProblem problem = make_problem(scene, {});
     const LaneGraphModel model(problem, Formulation::tight);
     const std::vector<double> stops = point_of(model.program(), {{0, 1}, {3, 4}, {4, 5}}, {});

@@ -5,15 +5,8 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph.hpp"
-#include "tests/support/printers.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -3,13 +3,7 @@
 #include "conelane/lane_graph_problem.hpp"
 
 #include "tests/support/six_cone_lane.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

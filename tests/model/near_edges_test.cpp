@@ -3,17 +3,7 @@
 #include "model/near_edges.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

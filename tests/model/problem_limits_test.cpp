@@ -6,27 +6,10 @@
 #include "model/lane_graph_model.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <limits>
-#include <string>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
-
-Scene strewn(std::size_t cones, double side_m) {
-    boost::random::mt19937_64 random(cones);
-    boost::random::uniform_real_distribution<double> along(0.0, side_m);
-    Scene scene;
-    for (std::size_t id = 0; id < cones; ++id) {
-        const double x = along(random);
-        scene.cones.push_back({static_cast<ConeId>(id), {x, along(random) - 0.5 * side_m}});
-    }
-    return scene;
-}
 
 RldParameters with_all_costs() {
     RldParameters parameters;
@@ -74,7 +57,7 @@ TEST(ProblemLimits, LargeScenesEndAtTheDeadlineOrAtTheBoundOfMemory) {
                 for (const double limit_ms : {1.0, 20.0, 200.0}) {
                     SCOPED_TRACE(testing::Message()
                                  << cones << " cones, " << side_m << " m, " << limit_ms << " ms");
-                    const Scene scene = strewn(cones, side_m);
+                    const Scene scene = tests::strewn_scene(cones, side_m, side_m, cones);
                     LimitedProblem limited;
                     EXPECT_LT(tests::overrun_ms(limit_ms, 1000.0,
                                                 [&] {
@@ -107,10 +90,12 @@ TEST(ProblemLimits, AreTheNumbersThatStandThere) {
 
 /// 5000 cones within a few metres: the edges alone would be millions.
 TEST(ProblemLimits, StopsByMemoryIfThereIsEnoughTime) {
-    const LimitedProblem limited = make_problem(strewn(5000, 8.0), {}, EdgeExtent::candidates, Deadline());
+    const LimitedProblem limited =
+        make_problem(tests::strewn_scene(5000, 8.0, 8.0, 5000), {}, EdgeExtent::candidates, Deadline());
     EXPECT_FALSE(limited.problem);
     EXPECT_EQ(limited.stopped_by, StopReason::memory);
-    const LimitedProblem pairs = make_problem(strewn(5000, 8.0), {}, EdgeExtent::all_pairs, Deadline());
+    const LimitedProblem pairs =
+        make_problem(tests::strewn_scene(5000, 8.0, 8.0, 5000), {}, EdgeExtent::all_pairs, Deadline());
     EXPECT_EQ(pairs.stopped_by, StopReason::memory);
 }
 

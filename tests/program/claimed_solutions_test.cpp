@@ -2,16 +2,8 @@
 
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/recorded_tracks.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstdlib>
-#include <filesystem>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {

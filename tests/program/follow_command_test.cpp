@@ -3,17 +3,8 @@
 #include "tests/support/planner_frames.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/recorded_tracks.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <sstream>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {

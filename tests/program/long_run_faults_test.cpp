@@ -6,22 +6,13 @@
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <map>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
 #include <sys/wait.h>
@@ -42,47 +33,19 @@ class LongRun : public ProgramFixture {
         ::setenv("PYTHONHOME", "nowhere", 1);
     }
 
-    /// A program that was started and has not ended.
-    struct Started {
-        pid_t process = -1;
-        fs::path errors;
-    };
-
-    Started start(const std::string& arguments, const std::string& errors = "stderr") {
-        const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
-                                    arguments + " >stdout 2>" + errors;
-        Started started{::fork(), path(errors)};
-        if (started.process == 0) {
-            ::setpgid(0, 0);
-            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-            ::_exit(127);
-        }
-        ::setpgid(started.process, started.process);
-        return started;
-    }
-
     /// Its exit code; -1 if a signal ended it.
-    static int wait_for(const Started& started) {
+    static int wait_for(pid_t started) {
         int status = 0;
-        EXPECT_EQ(::waitpid(started.process, &status, 0), started.process);
+        EXPECT_EQ(::waitpid(started, &status, 0), started);
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
 
-    /// Whether the program was still running when the signal came.
-    static bool end_by(const Started& started, int signal) {
-        ::kill(-started.process, signal);
-        int status = 0;
-        EXPECT_EQ(::waitpid(started.process, &status, 0), started.process);
-        return WIFSIGNALED(status) && WTERMSIG(status) == signal;
-    }
-
     /// Waits until the condition holds or the program ends. Returns whether it holds.
-    static bool wait_until(const Started& started, const std::function<bool()>& holds) {
+    static bool wait_until(pid_t started, const std::function<bool()>& holds) {
         for (int wait = 0; wait < 60'000; ++wait) {
             if (holds()) return true;
             siginfo_t state{};
-            if (::waitid(P_PID, static_cast<id_t>(started.process), &state, WEXITED | WNOHANG | WNOWAIT) !=
-                    0 ||
+            if (::waitid(P_PID, static_cast<id_t>(started), &state, WEXITED | WNOHANG | WNOWAIT) != 0 ||
                 state.si_pid != 0) {
                 return holds();
             }
@@ -163,13 +126,13 @@ class KilledRun : public LongRun, public testing::WithParamInterface<const char*
 TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
     const std::string detector = GetParam();
     constexpr int kEvery_m = 3;
-    ASSERT_EQ(run(compare(detector, "whole", kEvery_m)).exit_code, 0);
+    run_well(compare(detector, "whole", kEvery_m));
     const std::string lanes = detector + ".n014.lanes.jsonl";
     const fs::path part = path("killed") / (lanes + ".part");
     int killed = 0;
     for (std::size_t attempt = 0; attempt < 6; ++attempt) {
         const std::string before = whole_laps(text_of(part), text_of(path("whole") / lanes));
-        const Started started = start(compare(detector, "killed", kEvery_m));
+        const pid_t started = start(compare(detector, "killed", kEvery_m));
         // Some milliseconds after the answers of another lap: in the middle of the next one.
         wait_until(started, [&] {
             return whole_laps(text_of(part), text_of(path("whole") / lanes)).size() > before.size() ||
@@ -186,8 +149,7 @@ TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
     EXPECT_GT(killed, 0) << "it was always done too early";
     // The line that was being written when the signal came.
     std::ofstream(path("killed/scores.jsonl.tmp4711_0")) << "half of a";
-    const Outcome resumed = run(compare(detector, "killed", kEvery_m));
-    ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+    run_well(compare(detector, "killed", kEvery_m));
     EXPECT_EQ(answers("killed/" + lanes), answers("whole/" + lanes));
     EXPECT_EQ(results("killed"), results("whole"));
     EXPECT_EQ(text_of(path("killed/scenes.scenes.jsonl")), text_of(path("whole/scenes.scenes.jsonl")));
@@ -196,11 +158,7 @@ TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
 }
 INSTANTIATE_TEST_SUITE_P(Detectors, KilledRun,
                          testing::Values("rld-cbc", "rld-pair", "rld-shape", "clc", "front"),
-                         [](const auto& tested) {
-                             std::string name = tested.param;
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         [](const auto& tested) { return case_name(tested.param); });
 
 class KilledSolve : public LongRun, public testing::WithParamInterface<const char*> {};
 
@@ -208,19 +166,17 @@ class KilledSolve : public LongRun, public testing::WithParamInterface<const cha
 TEST_P(KilledSolve, LeavesTheOldSolutions) {
     // So many scenes that even the fastest solver runs longer than a program takes to start.
     const std::string every_m = GetParam() == std::string("path-pair") ? "0.2" : "2";
-    ASSERT_EQ(
-        run("scenes --tracks generated:kidney --fp 0.3 --out s.scenes.jsonl --every " + every_m).exit_code,
-        0);
+    run_well("scenes --tracks generated:kidney --fp 0.3 --out s.scenes.jsonl --every " + every_m);
     const std::string solve = "solve --scenes s.scenes.jsonl --nearest 24 --time-limit 60000 --solver " +
                               std::string(GetParam()) + " --out s.solutions.jsonl";
     const auto begin = std::chrono::steady_clock::now();
-    ASSERT_EQ(run(solve).exit_code, 0);
+    run_well(solve);
     const auto whole = std::chrono::steady_clock::now() - begin;
     int killed = 0;
     for (const int signal : {SIGKILL, SIGINT}) {
         for (const int part : {1, 3, 5}) {
             file_with("old\n", "s.solutions.jsonl");
-            const Started started = start(solve);
+            const pid_t started = start(solve);
             std::this_thread::sleep_for(whole * part / 10);
             if (!end_by(started, signal)) continue;
             ++killed;
@@ -228,52 +184,46 @@ TEST_P(KilledSolve, LeavesTheOldSolutions) {
         }
     }
     EXPECT_GT(killed, 0) << "it was always done too early";
-    const Outcome again = run("solve --scenes s.scenes.jsonl --nearest 10 --solver " +
-                              std::string(GetParam()) + " --out s.solutions.jsonl");
-    ASSERT_EQ(again.exit_code, 0) << again.errors;
-    EXPECT_EQ(run("check --scenes s.scenes.jsonl --solutions s.solutions.jsonl").exit_code, 0);
+    run_well("solve --scenes s.scenes.jsonl --nearest 10 --solver " + std::string(GetParam()) +
+             " --out s.solutions.jsonl");
+    run_well("check --scenes s.scenes.jsonl --solutions s.solutions.jsonl");
 }
 INSTANTIATE_TEST_SUITE_P(Solvers, KilledSolve, testing::Values("path-pair", "cbc", "cbc-main", "clp-bb"),
-                         [](const auto& tested) {
-                             std::string name = tested.param;
-                             std::erase(name, '-');
-                             return name;
-                         });
+                         [](const auto& tested) { return case_name(tested.param); });
 
 // Killed at different times: while scenes, answers, scores and tables are written.
 TEST_F(LongRun, KilledAtAnyMomentItLeavesNothingThatStopsTheNextOne) {
-    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    run_well(compare("clc", "whole"));
     for (int after_ms = 1; after_ms < 200; after_ms += 13) {
-        const Started started = start(compare("clc", "killed"));
+        const pid_t started = start(compare("clc", "killed"));
         std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
         (void)end_by(started, after_ms % 2 == 0 ? SIGINT : SIGKILL);
     }
-    const Outcome last = run(compare("clc", "killed"));
-    ASSERT_EQ(last.exit_code, 0) << last.errors;
+    run_well(compare("clc", "killed"));
     EXPECT_EQ(answers("killed/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
     EXPECT_EQ(results("killed"), results("whole"));
 }
 
 TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
-    ASSERT_EQ(run(compare("rld-cbc", "whole")).exit_code, 0);
+    run_well(compare("rld-cbc", "whole"));
     const fs::path part = path("shared/rld-cbc.n014.lanes.jsonl.part");
     // The first run is stopped in the middle of its work; if it ended too early, another one is started.
-    Started first;
+    pid_t first = -1;
     siginfo_t state{};
     for (int attempt = 0; attempt < 20 && state.si_code != CLD_STOPPED; ++attempt) {
         if (attempt > 0) (void)wait_for(first);
         first = start(compare("rld-cbc", "shared") + " --overwrite");
         wait_until(first, [&] { return fs::exists(part); });
-        ::kill(-first.process, SIGSTOP);
-        const auto process = static_cast<id_t>(first.process);
+        ::kill(-first, SIGSTOP);
+        const auto process = static_cast<id_t>(first);
         ASSERT_EQ(::waitid(P_PID, process, &state, WSTOPPED | WEXITED | WNOWAIT), 0);
     }
     ASSERT_EQ(state.si_code, CLD_STOPPED) << "it was always done too early";
     const Outcome second = run(compare("clc", "shared") + " --overwrite");
     EXPECT_EQ(second.exit_code, 2);
     EXPECT_EQ(second.errors, "conelane: shared: another conelane is writing there\n");
-    ::kill(-first.process, SIGCONT);
-    EXPECT_EQ(wait_for(first), 0) << text_of(first.errors);
+    ::kill(-first, SIGCONT);
+    EXPECT_EQ(wait_for(first), 0) << text_of(path("stderr"));
     EXPECT_EQ(answers("shared/rld-cbc.n014.lanes.jsonl"), answers("whole/rld-cbc.n014.lanes.jsonl"));
     EXPECT_EQ(results("shared"), results("whole"));
 }
@@ -281,7 +231,7 @@ TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
 // The disk is full after the scenes, after half of the answers, or in the scores. The files that fit stay,
 // and with enough space the run resumes.
 TEST_F(LongRun, AFullDiskIsNamedAndNothingIsLost) {
-    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    run_well(compare("clc", "whole"));
     std::uintmax_t scenes = 0;
     for (const auto& [name, text] : contents("whole"))
         if (name.starts_with("scenes.")) scenes += text.size();
@@ -299,8 +249,7 @@ TEST_F(LongRun, AFullDiskIsNamedAndNothingIsLost) {
         const std::map<std::string, std::string> kept = contents("disk/results");
         for (const auto& [name, text] : kept) EXPECT_THAT(name, testing::Not(HasSubstr(".tmp")));
         disk.grow("64m");
-        const Outcome resumed = run(compare("clc", "disk/results"));
-        ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+        run_well(compare("clc", "disk/results"));
         EXPECT_EQ(answers("disk/results/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
         EXPECT_EQ(results("disk/results"), results("whole"));
         // Complete laps of the earlier run are kept with their times.
@@ -322,7 +271,7 @@ TEST_F(LongRun, AFolderThatCannotBeWrittenIsNamed) {
     EXPECT_EQ(text_of(path("file")), "mine\n");
     const SmallDisk disk(path("disk"), "16m");
     if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
-    ASSERT_EQ(run(compare("clc", "disk/results")).exit_code, 0);
+    run_well(compare("clc", "disk/results"));
     const auto before = contents("disk/results");
     disk.make_read_only(true);
     for (const char* folder : {"disk/results", "disk/others"}) {
@@ -337,7 +286,7 @@ TEST_F(LongRun, AFolderThatCannotBeWrittenIsNamed) {
 
 /// Each file of a finished comparison, truncated in the middle of a line, as after a power failure.
 TEST_F(LongRun, TruncatedFilesAreReplacedOrNamed) {
-    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    run_well(compare("clc", "whole"));
     const auto cut = [&](const std::string& name, std::size_t length) {
         fs::remove_all(path("cut"));
         fs::copy(path("whole"), path("cut"), fs::copy_options::recursive);
@@ -348,8 +297,7 @@ TEST_F(LongRun, TruncatedFilesAreReplacedOrNamed) {
          {"results.jsonl", "scores.jsonl", "table.txt", "scenes.scenes.jsonl", "scenes.tracks.json"}) {
         SCOPED_TRACE(name);
         cut(name, text_of(path("whole") / name).size() / 2);
-        const Outcome outcome = run(compare("clc", "cut"));
-        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+        run_well(compare("clc", "cut"));
         EXPECT_EQ(text_of(path("cut") / name), text_of(path("whole") / name));
     }
     // Answers under their final name are trusted, so a truncated line is an error that names it.
@@ -368,8 +316,7 @@ TEST_F(LongRun, TruncatedFilesAreReplacedOrNamed) {
         const auto before = contents("cut");
         expect_refused(compare("clc", "cut"), {"cut/run.json"});
         EXPECT_EQ(contents("cut"), before);
-        const Outcome told_to = run(compare("clc", "cut") + " --overwrite");
-        EXPECT_EQ(told_to.exit_code, 0) << told_to.errors;
+        run_well(compare("clc", "cut") + " --overwrite");
         EXPECT_EQ(answers("cut/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
     }
     for (const char* text : {"5\n", "[1]\n", "null\n", "\"run\"\n"}) {
@@ -382,14 +329,13 @@ TEST_F(LongRun, TruncatedFilesAreReplacedOrNamed) {
 /// A detector from outside that dies, hangs, or prints an invalid answer; it is killed together with the run.
 TEST_F(LongRun, DetectorsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
     const std::string child = outside_child();
-    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    run_well(compare("clc", "whole"));
     for (const char* fault : {"crash", "hang", "nonsense", "half-a-line", "endless-line"}) {
         SCOPED_TRACE(fault);
         const std::string folder = std::string("with_") + fault;
         const std::string detector =
             "'exec:other=" + child + " ids " + fault + " 5 " + fault + ".marker' clc";
-        const Outcome outcome = run(compare(detector, folder));
-        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+        const Outcome outcome = run_well(compare(detector, folder));
         EXPECT_THAT(text_of(path(folder + "/table.txt")), HasSubstr("answers are errors"));
         EXPECT_THAT(outcome.errors, HasSubstr("other"));
         const auto others = answers(folder + "/other.n014.lanes.jsonl");
@@ -406,7 +352,7 @@ TEST_F(LongRun, DetectorsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
 
 /// Answers are never replaced by another run without --overwrite, whatever differs.
 TEST_F(LongRun, AChangedOptionNeverDeletesResults) {
-    ASSERT_EQ(run(compare("rld-pair", "results")).exit_code, 0);
+    run_well(compare("rld-pair", "results"));
     const auto before = contents("results");
     for (const char* other :
          {"--seed 7", "--every 13", "--fp 0.5", "--fp 0", "--range 25", "--time-limit 70", "--nearest 15",
@@ -430,7 +376,7 @@ TEST_F(LongRun, AChangedOptionNeverDeletesResults) {
     // With --overwrite they are replaced, but not if an option is invalid.
     expect_refused(compare("rld-pair", "results") + " --overwrite --shard 99/100", {"--shard"});
     EXPECT_EQ(contents("results"), before);
-    ASSERT_EQ(run(compare("rld-pair", "results") + " --seed 7 --overwrite").exit_code, 0);
+    run_well(compare("rld-pair", "results") + " --seed 7 --overwrite");
     EXPECT_NE(contents("results"), before);
 }
 

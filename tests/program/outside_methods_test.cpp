@@ -5,18 +5,12 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <fstream>
-#include <map>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -40,11 +34,6 @@ std::string child(const std::string& arguments) {
 
 class OutsideDetectors : public ProgramFixture {
   protected:
-    std::string run_well(const std::string& arguments) {
-        const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-        return outcome.output;
-    }
     [[nodiscard]] std::vector<LaneRecord> lanes(const std::string& name) const {
         return read_lanes(path(name + ".lanes.jsonl"));
     }
@@ -74,7 +63,7 @@ class OutsideDetectors : public ProgramFixture {
 
 TEST_F(OutsideDetectors, ConeIdsScoreAsTheDetectorBehindThemAndTimesAreShown) {
     const std::string summary =
-        run_well(std::string(kCompare) + "r --methods clc 'exec:other=" + child("ids") + "'");
+        run_well(std::string(kCompare) + "r --methods clc 'exec:other=" + child("ids") + "'").output;
     const std::string table = text_of(path("r/table.txt"));
     EXPECT_EQ(only_lanes(lanes("r/other")), only_lanes(lanes("r/clc")));
     for (const LaneRecord& record : lanes("r/other")) {
@@ -316,8 +305,10 @@ class FinishedLanes : public OutsideDetectors {
     /// Rows of `score` for the lanes of `clc` and these.
     std::vector<json> rows() {
         table_ = run_well(
-            "score --scenes s.scenes.jsonl --lanes clc.lanes.jsonl --methods lanes:them=theirs.lanes.jsonl "
-            "--json rows --wide");
+                     "score --scenes s.scenes.jsonl --lanes clc.lanes.jsonl --methods "
+                     "lanes:them=theirs.lanes.jsonl "
+                     "--json rows --wide")
+                     .output;
         return lines("rows");
     }
 
@@ -436,7 +427,8 @@ TEST_F(OutsideDetectors, DetectAndSweepTakeThemToo) {
     run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
     run_well("detect" + detector + "--scenes s.scenes.jsonl --out other.lanes.jsonl");
     EXPECT_EQ(only_lanes(lanes("other")), only_lanes(lanes("clc")));
-    file_with(run_well("detect" + detector + "--scenes - --out - <s.scenes.jsonl"), "stream.lanes.jsonl");
+    file_with(run_well("detect" + detector + "--scenes - --out - <s.scenes.jsonl").output,
+              "stream.lanes.jsonl");
     EXPECT_EQ(only_lanes(lanes("stream")), only_lanes(lanes("clc")));
     run_well(
         "sweep --tracks generated:circle --sizes 8 --every 30 --out r --methods "

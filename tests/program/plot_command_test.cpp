@@ -1,13 +1,7 @@
 // `conelane plot` as a user calls it: the picture contains what the scene and the lanes contain.
 
 #include "tests/support/program_fixture.hpp"
-
-#include <cstddef>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -45,8 +39,7 @@ class PlotCommand : public ProgramFixture {
 
     /// The picture of `conelane plot --scenes s.scenes.jsonl --id a ARGUMENTS --out p.svg`.
     std::string svg(const std::string& arguments) {
-        const Outcome outcome = run("plot --scenes s.scenes.jsonl --id a " + arguments + " --out p.svg");
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        const Outcome outcome = run_well("plot --scenes s.scenes.jsonl --id a " + arguments + " --out p.svg");
         EXPECT_EQ(outcome.errors, "");
         return text_of(path("p.svg"));
     }
@@ -126,7 +119,7 @@ TEST_F(PlotCommand, DrawsCandidatesAndClosedLanes) {
 
 TEST_F(PlotCommand, WritesPngByItsEnding) {
     make_scene();
-    EXPECT_EQ(run("plot --scenes s.scenes.jsonl --id a --lanes clc.lanes.jsonl --out p.png").exit_code, 0);
+    run_well("plot --scenes s.scenes.jsonl --id a --lanes clc.lanes.jsonl --out p.png");
     EXPECT_TRUE(text_of(path("p.png")).starts_with("\x89PNG\r\n"));
 }
 

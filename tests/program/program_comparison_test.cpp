@@ -3,17 +3,8 @@
 #include "evaluation/files/folder_lock.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -38,8 +29,7 @@ constexpr const char* kTwoTracks =
     "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 --time-limit 60000 ";
 
 TEST_F(Program, CompareWritesATableAndItsData) {
-    const Outcome outcome = run("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const Outcome outcome = run_well("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
     EXPECT_THAT(outcome.output, HasSubstr("rld-cbc n=12"));
     EXPECT_THAT(text_of(path("results") / "table.txt"), HasSubstr("CLC paper"));
     // The output on a terminal: the same methods, within its columns and lines, and where the rest is.
@@ -76,7 +66,7 @@ TEST_F(Program, CompareWritesATableAndItsData) {
 TEST_F(Program, ScoresResultsAndTableOfAComparisonArePutInPlaceTogether) {
     const std::string compare =
         "compare --tracks generated:circle --condition paper --every 30 --fp 0 --methods clc --out r";
-    ASSERT_EQ(run(compare).exit_code, 0);
+    run_well(compare);
     file_with("scores of before\n", "r/scores.jsonl");
     file_with("results of before\n", "r/results.jsonl");
     ASSERT_TRUE(std::filesystem::remove(path("r/table.txt")));
@@ -85,7 +75,7 @@ TEST_F(Program, ScoresResultsAndTableOfAComparisonArePutInPlaceTogether) {
     EXPECT_EQ(text_of(path("r/scores.jsonl")), "scores of before\n");
     EXPECT_EQ(text_of(path("r/results.jsonl")), "results of before\n");
     ASSERT_TRUE(std::filesystem::remove(path("r/table.txt")));
-    EXPECT_EQ(run(compare).exit_code, 0);
+    run_well(compare);
     EXPECT_THAT(text_of(path("r/table.txt")), HasSubstr("clc"));
     EXPECT_THAT(text_of(path("r/scores.jsonl")), HasSubstr("circle/pose_0000"));
 }
@@ -95,10 +85,8 @@ TEST_F(Program, SteadinessIsKnownIfPosesHaveACommonStretch) {
     for (const auto& [every, is_known] : {std::pair{"20", true}, {"40", false}}) {
         SCOPED_TRACE(every);
         const std::string folder = std::string("every_") + every;
-        ASSERT_EQ(run("compare --tracks generated:straight --methods clc --fp 0 --every " +
-                      std::string(every) + " --out " + folder)
-                      .exit_code,
-                  0);
+        run_well("compare --tracks generated:straight --methods clc --fp 0 --every " + std::string(every) +
+                 " --out " + folder);
         const std::vector<nlohmann::json> rows = results_in(path(folder));
         ASSERT_FALSE(rows.empty());
         for (const nlohmann::json& row : rows) EXPECT_EQ(row.contains("unsteady_share"), is_known) << row;
@@ -106,7 +94,7 @@ TEST_F(Program, SteadinessIsKnownIfPosesHaveACommonStretch) {
 }
 
 TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
-    ASSERT_EQ(run("compare --tracks generated:circle --every 15 --fp 0.3 --out results").exit_code, 0);
+    run_well("compare --tracks generated:circle --every 15 --fp 0.3 --out results");
     for (const char* detector : {"rld-cbc", "rld-pair", "rld-shape", "clc"}) {
         for (const LaneRecord& record :
              read_lanes(path("results") / (std::string(detector) + ".lanes.jsonl"))) {
@@ -118,7 +106,7 @@ TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
 }
 
 TEST_F(Program, AStoppedComparisonResumes) {
-    ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
+    run_well(std::string(kTwoTracks) + "--out whole");
     // The files of a run that was killed while writing: some lines, the last one incomplete.
     std::filesystem::copy(path("whole"), path("stopped"));
     const std::string lines = text_of(path("whole") / "clc.lanes.jsonl");
@@ -126,7 +114,7 @@ TEST_F(Program, AStoppedComparisonResumes) {
         std::filesystem::remove(path("stopped") / file);
     }
     file_with(lines.substr(0, lines.size() / 2), "stopped/clc.lanes.jsonl.part");
-    ASSERT_EQ(run(std::string(kTwoTracks) + "--out stopped").exit_code, 0);
+    run_well(std::string(kTwoTracks) + "--out stopped");
     EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
     EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
     EXPECT_EQ(results_in(path("stopped")), results_in(path("whole")));
@@ -135,7 +123,7 @@ TEST_F(Program, AStoppedComparisonResumes) {
 
 TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedWithoutOverwrite) {
     const std::string clc = "compare --tracks generated:circle --every 15 --methods clc --out results ";
-    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    run_well(clc + "--fp 0");
     const std::string lanes = text_of(path("results") / "clc.lanes.jsonl");
     const std::string record = text_of(path("results") / "run.json");
     expect_refused(clc + "--fp 0,0.3", {"results", "differs in fp", "--overwrite"});
@@ -143,11 +131,11 @@ TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedWithoutOverwrite) {
     expect_refused("sweep --tracks generated:circle --sizes 8 --out results", {"results", "--overwrite"});
     EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes);
     EXPECT_EQ(text_of(path("results") / "run.json"), record);
-    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    run_well(clc + "--fp 0");
     EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes)
         << "times of the first run: it has resumed";
     const std::size_t before = lanes_in(path("results") / "clc.lanes.jsonl").size();
-    ASSERT_EQ(run(clc + "--fp 0,0.3 --overwrite").exit_code, 0);
+    run_well(clc + "--fp 0,0.3 --overwrite");
     EXPECT_EQ(lanes_in(path("results") / "clc.lanes.jsonl").size(), 2 * before);
     std::filesystem::remove(path("results") / "run.json");
     expect_refused(clc + "--fp 0", {"results", "run.json", "--overwrite"});
@@ -162,15 +150,15 @@ TEST_F(Program, OneComparisonAtATimeWritesIntoAFolder) {
         expect_refused(clc, {"results", "another conelane is writing there"});
         expect_refused(clc + "--overwrite", {"results", "another conelane is writing there"});
     }
-    EXPECT_EQ(run(clc).exit_code, 0);
+    run_well(clc);
 }
 
 TEST_F(Program, MergedShardsEqualOneRun) {
-    ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
+    run_well(std::string(kTwoTracks) + "--out whole");
     for (const char* shard : {"0", "1", "2"}) {
-        ASSERT_EQ(run(std::string(kTwoTracks) + "--shard " + shard + "/3 --out part" + shard).exit_code, 0);
+        run_well(std::string(kTwoTracks) + "--shard " + shard + "/3 --out part" + shard);
     }
-    ASSERT_EQ(run("merge part2 part0 part1 --out merged").exit_code, 0);
+    run_well("merge part2 part0 part1 --out merged");
     EXPECT_EQ(text_of(path("merged") / "scenes.scenes.jsonl"),
               text_of(path("whole") / "scenes.scenes.jsonl"));
     for (const char* detector : {"clc.lanes.jsonl", "rld-cbc.lanes.jsonl"}) {
@@ -180,8 +168,7 @@ TEST_F(Program, MergedShardsEqualOneRun) {
     expect_refused("merge part0 part1 --out again", {"2/3 is missing"});
     expect_refused("merge part0 part1 part1 part2 --out again", {"1/3 is there twice"});
     expect_refused("merge part0 whole part2 --out again", {"whole", "shard"});
-    ASSERT_EQ(
-        run("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other").exit_code, 0);
+    run_well("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other");
     expect_refused("merge part0 other part2 --out again", {"other", "tracks"});
     expect_refused("compare --shard 3/3 --out again", {"--shard"});
     const std::string part = text_of(path("part1") / "run.json");
@@ -195,8 +182,7 @@ TEST_F(Program, MergedShardsEqualOneRun) {
 TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
     const std::string hairpins = "--tracks generated:tight_hairpins --fp 0,0.3 --every 22 ";
     const std::string degenerate = "tight_hairpins/pose_0001/fp_0.00/range_30";
-    const Outcome made = run("scenes --range 30 " + hairpins + "--out s.scenes.jsonl");
-    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    const Outcome made = run_well("scenes --range 30 " + hairpins + "--out s.scenes.jsonl");
     EXPECT_THAT(made.errors, HasSubstr("2 scenes are left out"));
     EXPECT_THAT(made.errors, HasSubstr(degenerate));
     const std::string scenes = text_of(path("s.scenes.jsonl"));
@@ -208,13 +194,11 @@ TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
 
     const std::string compare = "compare --methods clc --condition paper " + hairpins;
     for (const char* shard : {"0", "1"}) {
-        const Outcome part = run(compare + "--shard " + shard + "/2 --out part" + shard);
-        ASSERT_EQ(part.exit_code, 0) << part.errors;
+        const Outcome part = run_well(compare + "--shard " + shard + "/2 --out part" + shard);
         EXPECT_THAT(part.errors, HasSubstr("1 scene is left out"));
         EXPECT_THAT(part.output, HasSubstr("1 scene is left out"));
     }
-    const Outcome merged = run("merge part0 part1 --out merged");
-    ASSERT_EQ(merged.exit_code, 0) << merged.errors;
+    const Outcome merged = run_well("merge part0 part1 --out merged");
     EXPECT_THAT(text_of(path("merged") / "table.txt"), HasSubstr("2 scenes are left out"));
     EXPECT_EQ(nlohmann::json::parse(text_of(path("merged") / "scenes.tracks.json"))
                   .at("tight_hairpins")
@@ -226,8 +210,7 @@ TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
 }
 
 TEST_F(Program, SweepComparesConeSetSizes) {
-    const Outcome outcome = run("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const Outcome outcome = run_well("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep");
     EXPECT_THAT(outcome.output, HasSubstr("  n=8  n=12"));
     EXPECT_THAT(text_of(path("sweep") / "table.txt"), HasSubstr("clc n=8"));
     for (const LaneRecord& record : read_lanes(path("sweep") / "rld-cbc.n008.lanes.jsonl")) {

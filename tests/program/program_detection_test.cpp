@@ -4,19 +4,11 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cstddef>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <string>
 #include <thread>
-#include <vector>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -37,10 +29,8 @@ TEST_F(Program, SameSeedSameBytesWithAnyNumberOfThreads) {
 TEST_F(Program, LanesDoNotDependOnThreads) {
     make_scenes("--fp 0,0.3");
     const auto lanes = [&](const std::string& detector, const std::string& threads) {
-        EXPECT_EQ(run("detect --method " + detector + " --scenes s.scenes.jsonl --threads " + threads +
-                      " --out " + threads + ".lanes.jsonl")
-                      .exit_code,
-                  0);
+        run_well("detect --method " + detector + " --scenes s.scenes.jsonl --threads " + threads + " --out " +
+                 threads + ".lanes.jsonl");
         std::vector<Lane> found;
         for (const LaneRecord& record : read_lanes(path(threads + ".lanes.jsonl")))
             found.push_back(record.answer.lane);
@@ -80,7 +70,7 @@ TEST_F(Program, DetectsWithOwnWeights) {
     const std::string shipped = (source_directory() / "graph_search/weights/front.json").string();
     const auto lanes = [&](const std::string& options) {
         const std::string out = " --time-limit inf --scenes s.scenes.jsonl --out l.lanes.jsonl";
-        EXPECT_EQ(run("detect --method front " + options + out).exit_code, 0);
+        run_well("detect --method front " + options + out);
         std::vector<LaneAnswer> answers;
         for (const LaneRecord& record : read_lanes(path("l.lanes.jsonl"))) answers.push_back(record.answer);
         return answers;
@@ -111,9 +101,7 @@ TEST_F(Program, DetectionEndsInRealTimeUnlessToldOtherwise) {
     }
     file_with(scene.dump() + "\n", "lattice.scenes.jsonl");
     const auto answer = [&](const std::string& options) {
-        const Outcome outcome =
-            run("detect --method rld-pair --scenes lattice.scenes.jsonl --out l.lanes.jsonl " + options);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        run_well("detect --method rld-pair --scenes lattice.scenes.jsonl --out l.lanes.jsonl " + options);
         return read_lanes(path("l.lanes.jsonl")).at(0).answer;
     };
     EXPECT_EQ(answer("").stopped_by, StopReason::time);
@@ -126,7 +114,7 @@ TEST_F(Program, DetectionEndsInRealTimeUnlessToldOtherwise) {
 TEST_F(Program, AStreamIsAnsweredLineByLine) {
     make_scenes("--fp 0.2");
     const std::vector<Lane> expected = [&] {
-        EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+        run_well("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl");
         return lanes_in(path("l.lanes.jsonl"));
     }();
     const std::string in = path("in").string();
@@ -178,8 +166,7 @@ TEST_F(Program, GroundTruthAsLanesScoresFull) {
         records.push_back(record);
     }
     write_lanes(path("truth.lanes.jsonl"), records);
-    const Outcome outcome = run("score --scenes s.scenes.jsonl --lanes truth.lanes.jsonl --json truth.json");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    run_well("score --scenes s.scenes.jsonl --lanes truth.lanes.jsonl --json truth.json");
     std::ifstream lines(path("truth.json"));
     std::size_t rows = 0;
     for (std::string line; std::getline(lines, line); ++rows) {
@@ -218,7 +205,7 @@ TEST_F(Program, AProofThatThereIsNoLaneCountsAsSolved) {
         records.back().answer.status = LaneStatus::none;
     }
     write_lanes(path("l.lanes.jsonl"), records);
-    ASSERT_EQ(run("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json rows").exit_code, 0);
+    run_well("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json rows");
     std::ifstream lines(path("rows"));
     std::string line;
     ASSERT_TRUE(std::getline(lines, line));

@@ -2,21 +2,13 @@
 
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <string>
-#include <string_view>
 #include <thread>
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -43,15 +35,9 @@ class Interruption : public Program {
     /// Runs the program until `begun` says so, then ends it by the signal. Its temporary files go to `tmp`.
     void interrupt(const std::string& arguments, int signal, const std::function<bool()>& begun) {
         std::filesystem::create_directories(path("tmp"));
-        const std::string command = "cd " + path("").string() + " && TMPDIR=tmp exec " + conelane_program() +
-                                    " " + arguments + " >stdout 2>stderr";
-        const pid_t child = ::fork();
-        if (child == 0) {
-            ::setpgid(0, 0);
-            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-            ::_exit(127);
-        }
-        ::setpgid(child, child);
+        ::setenv("TMPDIR", "tmp", 1);
+        const pid_t child = start(arguments);
+        ::unsetenv("TMPDIR");
         int status = 0;
         bool ready = false;
         for (int wait = 0; wait < 6000 && !(ready = begun() && waits_for(child, signal)); ++wait) {
@@ -59,9 +45,7 @@ class Interruption : public Program {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
         EXPECT_TRUE(ready);
-        ::kill(-child, signal);
-        ASSERT_EQ(::waitpid(child, &status, 0), child);
-        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << "status " << status;
+        EXPECT_TRUE(end_by(child, signal));
         EXPECT_EQ(text_of(path("stderr")), "conelane: interrupted\n");
         EXPECT_EQ(text_of(path("stdout")), "");
         EXPECT_TRUE(std::filesystem::is_empty(path("tmp")));
@@ -71,10 +55,9 @@ class Interruption : public Program {
     }
     /// Work that takes seconds.
     void make_dense_scenes() {
-        ASSERT_EQ(run("scenes --tracks generated:kidney --every 1.1 --fp 0,0.1,0.2,0.3,0.4,0.5 --out "
-                      "s.scenes.jsonl")
-                      .exit_code,
-                  0);
+        run_well(
+            "scenes --tracks generated:kidney --every 1.1 --fp 0,0.1,0.2,0.3,0.4,0.5 --out "
+            "s.scenes.jsonl");
     }
 };
 
@@ -101,13 +84,13 @@ TEST_F(Interruption, OfAComparisonLeavesWhatItAnsweredAndTheNextOneGoesOn) {
     const std::string clc = text_of(path("results") / "clc.n020.lanes.jsonl");
     ASSERT_FALSE(std::filesystem::exists(path("results") / "rld-cbc.n020.lanes.jsonl"))
         << "it was done too early";
-    ASSERT_EQ(run(compare).exit_code, 0);
+    run_well(compare);
     EXPECT_EQ(text_of(path("results") / "clc.n020.lanes.jsonl"), clc);
     EXPECT_TRUE(text_of(path("results") / "rld-cbc.n020.lanes.jsonl").starts_with(whole_laps.substr(0, 200)));
 }
 
 TEST_F(Interruption, OfAReportLeavesNoPage) {
-    ASSERT_EQ(run("compare --tracks generated:circle --every 15 --methods clc --out results").exit_code, 0);
+    run_well("compare --tracks generated:circle --every 15 --methods clc --out results");
     if (!std::filesystem::exists(path("results") / "report.html"))
         GTEST_SKIP() << "no Python with matplotlib";
     for (const int signal : {SIGINT, SIGTERM}) {

@@ -4,16 +4,11 @@
 #include "evaluation/files/parameter_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
 #include <chrono>
-#include <cstdlib>
-#include <filesystem>
-#include <string>
 #include <thread>
-#include <utility>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 namespace conelane::experiments {
@@ -50,7 +45,7 @@ TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
         std::system(("mkfifo " + pipe + " && (timeout 60 cat " + pipe + " >" + path("read").string() + " &)")
                         .c_str()),
         0);
-    EXPECT_EQ(run("detect --method clc --scenes a.scenes.jsonl --out pipe").exit_code, 0);
+    run_well("detect --method clc --scenes a.scenes.jsonl --out pipe");
     for (int wait = 0; wait < 100 && text_of(path("read")).empty(); ++wait) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
@@ -79,10 +74,10 @@ TEST_F(Program, AnOutputMustNotBeAnInput) {
         }
         expect_refused(std::string(command) + " --scenes link --out s.scenes.jsonl", {"--out", "--scenes"});
     }
-    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    run_well("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl");
     expect_refused("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json l.lanes.jsonl",
                    {"--json", "l.lanes.jsonl", "--lanes"});
-    ASSERT_EQ(run("certify --scenes s.scenes.jsonl --out c.certificates.jsonl").exit_code, 0);
+    run_well("certify --scenes s.scenes.jsonl --out c.certificates.jsonl");
     write_rld_parameters(path("p.json"), RldParameters{});
     expect_refused("solve --scenes s.scenes.jsonl --params p.json --out p.json", {"--out", "--params"});
     file_with("tag,x,y,direction,x_variance,y_variance,xy_covariance\n", "t.csv");
@@ -92,13 +87,13 @@ TEST_F(Program, AnOutputMustNotBeAnInput) {
     expect_refused("report --results r --out r/results.jsonl", {"--out", "--results"});
     EXPECT_EQ(text_of(path("s.scenes.jsonl")), scenes);
     // A value that is not a file may be the name of a file.
-    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
-    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
+    run_well("detect --method clc --scenes s.scenes.jsonl --out clc");
+    run_well("detect --method clc --scenes s.scenes.jsonl --out clc");
 }
 
 TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
     make_scenes("--fp 0.2");
-    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    run_well("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl");
     const auto exit_code = [&](const std::string& arguments) {
         const std::string command = "cd " + path("").string() + " && " + conelane_program() + " " +
                                     arguments + " 2>" + path("stderr").string();

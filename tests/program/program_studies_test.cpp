@@ -3,17 +3,8 @@
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <string>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -27,13 +18,11 @@ TEST_F(Program, TrainsFrontAndResumes) {
         "train front --tracks generated:slalom@1 --hold-out generated:kidney@2 --hold-out-every 80 --fp 0.3 "
         "--draws 1 --trust-draws 4 --imitation-steps 4 --search-steps 4 --judge-steps 4 --figures-every 6 "
         "--seed 3 --out ";
-    const Outcome whole = run(command + "whole.json");
-    ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+    const Outcome whole = run_well(command + "whole.json");
     EXPECT_THAT(whole.output, HasSubstr("step 12 of 12, judging"));
     EXPECT_THAT(whole.output, HasSubstr("usable"));
-    ASSERT_EQ(run(command + "first.json --checkpoint c.json").exit_code, 0);
-    const Outcome again = run(command + "again.json --checkpoint c.json --threads 2");
-    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    run_well(command + "first.json --checkpoint c.json");
+    const Outcome again = run_well(command + "again.json --checkpoint c.json --threads 2");
     EXPECT_THAT(again.output, Not(HasSubstr("step"))) << "nothing is left to do";
     const auto weights = [&](const std::string& file) {
         auto json = nlohmann::json::parse(text_of(path(file)));
@@ -51,8 +40,7 @@ TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColorStudyUses) {
     const std::string tune =
         "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
         "--shape --folds 2 --rounds 1 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
-    const Outcome tuned = run(tune);
-    ASSERT_EQ(tuned.exit_code, 0) << tuned.errors;
+    const Outcome tuned = run_well(tune);
     EXPECT_THAT(tuned.output, HasSubstr("held out circle"));
     const nlohmann::json record = nlohmann::json::parse(text_of(path("p.record.json")));
     EXPECT_EQ(record["nearest"], 8);
@@ -66,8 +54,7 @@ TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColorStudyUses) {
     EXPECT_TRUE(record.contains("wrong_cones"));
     EXPECT_EQ(run(tune).output, tuned.output) << "from its log";
 
-    const Outcome study = run("study confidence-and-colour --record p.record.json --out study.jsonl");
-    ASSERT_EQ(study.exit_code, 0) << study.errors;
+    const Outcome study = run_well("study confidence-and-colour --record p.record.json --out study.jsonl");
     EXPECT_THAT(study.output, HasSubstr("colours, 20 % wrong"));
     // Geometry alone, on the held-out tracks, gives the figures of the tuning.
     std::ifstream lines(path("study.jsonl"));
@@ -84,8 +71,7 @@ TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColorStudyUses) {
 
 TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
     make_scenes("--fp 0.2");
-    const Outcome optimality = run("study optimality --scenes s.scenes.jsonl --out optimality.jsonl");
-    ASSERT_EQ(optimality.exit_code, 0) << optimality.errors;
+    const Outcome optimality = run_well("study optimality --scenes s.scenes.jsonl --out optimality.jsonl");
     EXPECT_THAT(optimality.output, HasSubstr("equal %"));
     std::ifstream lines(path("optimality.jsonl"));
     std::size_t rows = 0;
@@ -98,18 +84,16 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
                          std::max(0.0, candidate - optimum) / std::max(1.0, std::abs(optimum)));
     }
     EXPECT_EQ(rows, read_scenes(path("s.scenes.jsonl")).size());
-    const Outcome backends = run("study backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
-    ASSERT_EQ(backends.exit_code, 0) << backends.errors;
+    const Outcome backends =
+        run_well("study backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
     EXPECT_THAT(backends.output, HasSubstr("cbc-main/tight"));
     EXPECT_THAT(backends.output, HasSubstr("exhaustive"));
     const Outcome printed =
-        run("study backends --scenes s.scenes.jsonl --sizes 6,10 --solvers all,cbc-main/paper");
-    ASSERT_EQ(printed.exit_code, 0) << printed.errors;
+        run_well("study backends --scenes s.scenes.jsonl --sizes 6,10 --solvers all,cbc-main/paper");
     EXPECT_THAT(printed.output, HasSubstr("cbc-main/paper"));
     EXPECT_THAT(printed.output, HasSubstr("exhaustive takes at most 9 cones: left out at n = 10"));
-    const Outcome all = run(
+    const Outcome all = run_well(
         "study backends --scenes s.scenes.jsonl --sizes 6,all --solvers path-pair --limit 3 --out all.jsonl");
-    ASSERT_EQ(all.exit_code, 0) << all.errors;
     EXPECT_THAT(all.output, HasSubstr("all path-pair"));
     std::map<std::string, std::size_t> visible;
     for (const AnnotatedScene& scene : read_scenes(path("s.scenes.jsonl")))
@@ -132,8 +116,7 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
                        {"--sizes"});
     expect_refused("study backends --scenes s.scenes.jsonl --solvers magic --out x.jsonl",
                    {"--solvers", "magic"});
-    const Outcome list = run("study");
-    EXPECT_EQ(list.exit_code, 0);
+    const Outcome list = run_well("study");
     EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));
     const Outcome beams = run("study front-beam --scenes s.scenes.jsonl --beams 5,15 --reference-beam 40");
     EXPECT_THAT(beams.output, HasSubstr("best score"));

@@ -1,13 +1,7 @@
 // The program as a user or a script calls it: its help, and one line and exit code 2 for bad input.
 
 #include "tests/support/program_on_scenes.hpp"
-
-#include <map>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -16,13 +10,12 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST_F(Program, HelpIsEverywhere) {
-    EXPECT_EQ(run("--help").exit_code, 0);
+    run_well("--help");
     for (const char* command :
          {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
           "study", "study formulations", "study optimality", "study backends", "study relaxations",
           "study confidence-and-colour", "study front-beam", "report", "tune"}) {
-        const Outcome help = run(std::string(command) + " --help");
-        EXPECT_EQ(help.exit_code, 0);
+        const Outcome help = run_well(std::string(command) + " --help");
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
     }
 }
@@ -181,9 +174,9 @@ TEST_F(Program, BadFilesAreNamed) {
 /// No scene is an error, and line numbers count blank lines.
 TEST_F(Program, RecordsAreNamedByTheirLine) {
     file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
-    ASSERT_EQ(run("detect --method clc --scenes a.scenes.jsonl --out a.lanes.jsonl").exit_code, 0);
-    ASSERT_EQ(run("solve --scenes a.scenes.jsonl --out a.solutions.jsonl").exit_code, 0);
-    ASSERT_EQ(run("certify --scenes a.scenes.jsonl --out a.certificates.jsonl").exit_code, 0);
+    run_well("detect --method clc --scenes a.scenes.jsonl --out a.lanes.jsonl");
+    run_well("solve --scenes a.scenes.jsonl --out a.solutions.jsonl");
+    run_well("certify --scenes a.scenes.jsonl --out a.certificates.jsonl");
     file_with("\n", "empty");
     for (const auto& [command, name] : std::map<std::string, std::string>{
              {"score --scenes a.scenes.jsonl --lanes ", "a.lanes.jsonl"},

@@ -2,15 +2,7 @@
 // output is written all the same.
 
 #include "tests/support/program_on_scenes.hpp"
-
-#include <algorithm>
-#include <filesystem>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -50,8 +42,7 @@ TEST_F(Unanswered, AStreamOfLinesThatAreNoScenesEndsBy1) {
     expect_unanswered(run("detect --method clc --scenes - --out - <bad"),
                       "clc: 2 of 2 answers are errors, the first to 1", "pose");
     file_with("{}\n" + std::string(kScene) + "\n", "half");
-    const Outcome half = run("detect --method clc --scenes - --out - <half");
-    EXPECT_EQ(half.exit_code, 0);
+    const Outcome half = run_well("detect --method clc --scenes - --out - <half");
     EXPECT_THAT(half.errors, HasSubstr("clc: 1 of 2 answers are errors"));
 }
 
@@ -60,8 +51,8 @@ TEST_F(Unanswered, ASolverThatTakesNoneOfTheScenesEndsBy1) {
     expect_unanswered(run("solve --solver exhaustive --scenes s.scenes.jsonl --out s.solutions.jsonl"),
                       "exhaustive: ", "answers are errors");
     EXPECT_THAT(text_of(path("s.solutions.jsonl")), HasSubstr("\"status\":\"error\""));
-    const Outcome solved = run("solve --solver path-pair --scenes s.scenes.jsonl --out s.solutions.jsonl");
-    EXPECT_EQ(solved.exit_code, 0);
+    const Outcome solved =
+        run_well("solve --solver path-pair --scenes s.scenes.jsonl --out s.solutions.jsonl");
     EXPECT_EQ(solved.errors, "");
 }
 
@@ -115,15 +106,14 @@ TEST_F(Unanswered, CertificatesThatClaimNothingEndBy1) {
             EXPECT_EQ(verified.exit_code, 1);
             EXPECT_EQ(verified.errors, "conelane: c.jsonl: no certificate is verified\n");
         }
-        const Outcome all = run(certify + "--nearest 12");
-        EXPECT_EQ(all.exit_code, 0);
+        const Outcome all = run_well(certify + "--nearest 12");
         EXPECT_EQ(all.errors, "");
     }
 }
 
 TEST_F(Unanswered, AnErrorAmongAnswersIsSaidAndIsNoFailure) {
     make_scenes("");
-    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    run_well("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl");
     const std::string lanes = text_of(path("l.lanes.jsonl"));
     const std::string first = read_lanes(path("l.lanes.jsonl")).front().scene;
     file_with(R"({"scene":")" + first +
@@ -131,8 +121,7 @@ TEST_F(Unanswered, AnErrorAmongAnswersIsSaidAndIsNoFailure) {
                   R"("message":"two\nlines"})" +
                   lanes.substr(lanes.find('\n')),
               "l.lanes.jsonl");
-    const Outcome outcome = run("drive --lanes l.lanes.jsonl --scenes s.scenes.jsonl --out d.jsonl");
-    EXPECT_EQ(outcome.exit_code, 0);
+    const Outcome outcome = run_well("drive --lanes l.lanes.jsonl --scenes s.scenes.jsonl --out d.jsonl");
     EXPECT_THAT(outcome.errors, HasSubstr("clc: 1 of "));
     EXPECT_THAT(outcome.errors, HasSubstr(first + ": two lines\n"));
 }

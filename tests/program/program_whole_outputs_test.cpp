@@ -5,18 +5,12 @@
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <map>
-#include <string>
 #include <thread>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -42,15 +36,7 @@ class WholeOutputs : public Program {
     /// Starts the program and sends the signal once the folder has a file whose name contains `part`.
     void interrupt(const std::string& arguments, int signal, const std::string& folder,
                    const std::string& part) {
-        const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
-                                    arguments + " >stdout 2>stderr";
-        const pid_t child = ::fork();
-        if (child == 0) {
-            ::setpgid(0, 0);
-            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-            ::_exit(127);
-        }
-        ::setpgid(child, child);
+        const pid_t child = start(arguments);
         const auto begun = [&] {
             return std::ranges::any_of(contents(folder), [&](const auto& file) {
                 return file.first.find(part) != std::string::npos;
@@ -61,9 +47,7 @@ class WholeOutputs : public Program {
             ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << text_of(path("stderr"));
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
-        ::kill(-child, signal);
-        ASSERT_EQ(::waitpid(child, &status, 0), child);
-        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << "it was done too early";
+        EXPECT_TRUE(end_by(child, signal)) << "it was done too early";
         fs::remove(path("stdout"));
         fs::remove(path("stderr"));
     }
@@ -99,7 +83,7 @@ TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNotWritten) {
     EXPECT_EQ(full.errors,
               "conelane: disk/s.scenes.jsonl: cannot be written to its end: No space left on device\n");
     EXPECT_THAT(contents("disk"), testing::IsEmpty()) << "a companion alone";
-    ASSERT_EQ(run(scenes + "40").exit_code, 0);
+    run_well(scenes + "40");
     const auto before = contents("disk");
     EXPECT_EQ(before.size(), 2U);
     EXPECT_EQ(run(scenes + "1.1 --fp 0.4").exit_code, 2);
@@ -117,7 +101,7 @@ TEST_F(WholeOutputs, OfInterruptedInstancesAreNotWritten) {
         interrupt(kMoreInstances, signal, "made", ".mps.gz");
         EXPECT_THAT(contents("made"), testing::IsEmpty());
     }
-    ASSERT_EQ(run(kInstances).exit_code, 0);
+    run_well(kInstances);
     const auto before = contents("made");
     EXPECT_EQ(before.size(), 5U);
     interrupt(kMoreInstances, SIGINT, "made", "curvy");
@@ -125,11 +109,9 @@ TEST_F(WholeOutputs, OfInterruptedInstancesAreNotWritten) {
 }
 
 TEST_F(WholeOutputs, OfInstancesHoldOneLibrary) {
-    ASSERT_EQ(run(kInstances).exit_code, 0);
+    run_well(kInstances);
     file_with("mine", "made/notes.txt");
-    ASSERT_EQ(
-        run("instances --tracks generated:straight --fp 0.5 --every 1000 --nearest 12 --out made").exit_code,
-        0);
+    run_well("instances --tracks generated:straight --fp 0.5 --every 1000 --nearest 12 --out made");
     const auto files = contents("made");
     EXPECT_EQ(files.at("notes.txt"), "mine");
     std::size_t programs = 0;
@@ -170,7 +152,7 @@ TEST_F(WholeOutputs, AComparisonDoesNotReplaceAPageOfAnother) {
 }
 
 TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
-    ASSERT_EQ(run(kCompare + std::string("r")).exit_code, 0);
+    run_well(kCompare + std::string("r"));
     if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
     std::uintmax_t results = 0;
     for (const auto& [name, text] : contents("r")) {
@@ -185,13 +167,13 @@ TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
     EXPECT_THAT(full.output, HasSubstr("results: disk/r, without a page"));
     EXPECT_FALSE(fs::exists(path("disk/r/report.html")));
     disk.grow("64m");
-    EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0);
+    run_well(kCompare + std::string("disk/r"));
     EXPECT_TRUE(fs::exists(path("disk/r/report.html")));
     EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0) << "its own page is replaced";
 }
 
 TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNotWritten) {
-    ASSERT_EQ(run(kCompare + std::string("r")).exit_code, 0);
+    run_well(kCompare + std::string("r"));
     if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
     const SmallDisk disk(path("disk"), "64k");
     if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";

@@ -3,17 +3,7 @@
 
 #include "evaluation/files/json_node.hpp"
 #include "tests/support/program_on_scenes.hpp"
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdlib>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -127,8 +117,7 @@ TEST_F(Words, LongWorkSaysOnATerminalHowMuchTimeIsLeft) {
     const std::string drawn = text_of(path("typescript"));
     EXPECT_THAT(drawn, HasSubstr("scenes ["));
     EXPECT_THAT(drawn, HasSubstr(" s left"));
-    const Outcome quiet = run(scenes + "b.scenes.jsonl");
-    EXPECT_EQ(quiet.exit_code, 0);
+    const Outcome quiet = run_well(scenes + "b.scenes.jsonl");
     EXPECT_EQ(quiet.errors, "");
     EXPECT_THAT(text_of(path("said")), testing::EndsWith("in a.scenes.jsonl, boundaries in a.tracks.json\n"));
     EXPECT_EQ(text_of(path("said")).size(), quiet.output.size()) << "a bar among the output";

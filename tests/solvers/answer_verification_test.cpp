@@ -5,23 +5,11 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_solver.hpp"
 #include "solvers/exhaustive.hpp"
+#include "tests/support/agreement.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/solver_cases.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -215,11 +203,7 @@ TEST(VerifiedSolver, NoStartChangesAnOptimum) {
                 const auto solver = tried.entry->make(tried.formulation);
                 const LaneGraphProblem problem = make_problem(scene, parameters, solver->extent());
                 for (const LaneGraph& start : starts) {
-                    const RldReport report = solver->solve(problem, {}, &start);
-                    EXPECT_EQ(report.status, best.status) << report.message;
-                    if (report.objective && best.objective) {
-                        EXPECT_NEAR(*report.objective, *best.objective, 1e-6);
-                    }
+                    (void)tests::agrees(solver->solve(problem, {}, &start), best);
                 }
             }
         }

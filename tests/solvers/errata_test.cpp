@@ -7,13 +7,7 @@
 #include "solvers/milp/cbc_solver.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/cones_at.hpp"
-
-#include <cmath>
-#include <string_view>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -4,11 +4,7 @@
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/linear_relaxation.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <optional>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -9,20 +9,12 @@
 #include "model/learned_features.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -192,12 +184,7 @@ TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
         parameters.d_gap = 10.0;
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7);
         const LaneGraphProblem problem = make_problem(scene, parameters);
-        for (const ProblemEdge& edge : problem.edges) {
-            const CheckReport report = check(scene, parameters, LaneGraph{{{edge.i, edge.j}}});
-            ASSERT_TRUE(report.objective);
-            EXPECT_FALSE(report.is_final);
-            ASSERT_NEAR(*report.objective, edge.cost, 1e-9);
-        }
+        tests::expect_edge_costs_confirmed(problem, scene, parameters);
         for (const ProblemTurn& turn : problem.turns) {
             const auto of = [&](std::size_t e) { return Edge{problem.edges[e].i, problem.edges[e].j}; };
             LaneGraph both{{of(turn.edge_i), of(turn.edge_k)}};
@@ -307,14 +294,9 @@ TEST(LearnedCosts, AreCheckedBeforeTheyAreUsed) {
     const auto fault = [](const auto& change) {
         LearnedCosts costs = LearnedCosts::zero(3);
         change(costs);
-        try {
-            validate(costs);
-        } catch (const InvalidInput& error) {
-            return std::string(error.what());
-        }
-        return std::string();
+        return refusal([&] { validate(costs); });
     };
-    EXPECT_EQ(fault([](LearnedCosts&) {}), "");
+    EXPECT_EQ(fault([](LearnedCosts&) {}), "accepted");
     EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::edge).linear.pop_back(); }),
               "edge.linear: must have 15 numbers, not 14");
     EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::turn).hidden.pop_back(); }),

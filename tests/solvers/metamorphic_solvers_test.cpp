@@ -6,17 +6,9 @@
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -166,21 +158,15 @@ TEST_P(PathPairMetamorphic, FindsTheSameOptimumAmongManyCones) {
     EXPECT_GE(lanes, 30U);
 }
 
-std::string test_name(const SolverCase& solver) {
-    std::string name = std::string(solver.entry->name) + "_" + std::string(to_string(solver.formulation));
-    std::ranges::replace(name, '-', '_');
-    return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Registry, SolverMetamorphic,
                          testing::Combine(testing::ValuesIn(tests::solver_cases()),
                                           testing::ValuesIn(tests::changes())),
                          [](const auto& test) {
-                             return test_name(std::get<0>(test.param)) + "_" +
+                             return case_name(std::get<0>(test.param)) + "_" +
                                     std::string(std::get<1>(test.param).name);
                          });
 INSTANTIATE_TEST_SUITE_P(Registry, SolverScale, testing::ValuesIn(tests::solver_cases()),
-                         [](const auto& test) { return test_name(test.param); });
+                         [](const auto& test) { return case_name(test.param); });
 INSTANTIATE_TEST_SUITE_P(Changes, PathPairMetamorphic, testing::ValuesIn(tests::changes()),
                          [](const auto& test) { return std::string(test.param.name); });
 

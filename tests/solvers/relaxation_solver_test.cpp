@@ -5,14 +5,8 @@
 #include "conelane/relaxation_solvers.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
-#include "tests/support/printers.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

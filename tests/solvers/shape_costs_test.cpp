@@ -8,14 +8,7 @@
 #include "solvers/exhaustive.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numbers>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -146,9 +139,7 @@ TEST(ShapeCosts, AreZeroIfSwitchedOff) {
 /// Two cones at one place, and an edge of 0.2 m beside them at exactly the expected width: nothing faces an
 /// edge without a direction.
 TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
-    Scene scene;
-    for (const Point& place : {Point(2.0, 0.0), Point(2.0, 0.0), Point(1.9, 0.5), Point(2.1, 0.5)})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    Scene scene = tests::cones_at({{2.0, 0.0}, {2.0, 0.0}, {1.9, 0.5}, {2.1, 0.5}});
     RldParameters parameters;
     parameters.w_v = 1.0;
     parameters.d_w = 0.5;

@@ -4,21 +4,14 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
+#include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <memory>
 #include <ostream>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -150,13 +143,9 @@ TEST_P(SolverContract, AgreesWithEveryPairOfPathsOnRandomScenes) {
         parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
         const RldReport reference = make_exhaustive_solver()->solve(make_problem(scene, parameters), {});
         const RldReport report = solve(scene, parameters);
-        ASSERT_EQ(report.status, reference.status) << report.message;
-        if (reference.status != SolveStatus::optimal) continue;
+        if (!tests::agrees(report, reference)) continue;
         ++feasible;
-        EXPECT_NEAR(*report.objective, *reference.objective, 1e-6);
-        const CheckReport verdict =
-            check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound});
-        EXPECT_THAT(verdict.violations, testing::IsEmpty());
+        tests::expect_confirmed(report, scene, parameters);
     }
     EXPECT_GT(feasible, 60);
 }
@@ -262,12 +251,8 @@ TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
         }
         const RldReport reference = make_exhaustive_solver()->solve(make_problem(scene, parameters), {});
         const RldReport report = solve(scene, parameters);
-        ASSERT_EQ(report.status, reference.status) << report.message;
-        if (report.status != SolveStatus::optimal) continue;
-        EXPECT_NEAR(*report.objective, *reference.objective, 1e-6);
-        EXPECT_THAT(
-            check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound}).violations,
-            testing::IsEmpty());
+        if (!tests::agrees(report, reference)) continue;
+        tests::expect_confirmed(report, scene, parameters);
         if (*report.lane_graph != *plain.lane_graph) ++changed;
     }
     EXPECT_GT(changed, 0) << "the extras decided nothing";
@@ -293,12 +278,8 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
         const LaneGraphProblem problem = make_problem(scene, parameters);
         const RldReport reference = make_exhaustive_solver()->solve(problem, {});
         const RldReport report = solve(scene, parameters);
-        ASSERT_EQ(report.status, reference.status) << report.message;
-        if (report.status != SolveStatus::optimal) continue;
-        EXPECT_NEAR(*report.objective, *reference.objective, 1e-6);
-        EXPECT_THAT(
-            check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound}).violations,
-            testing::IsEmpty());
+        if (!tests::agrees(report, reference)) continue;
+        tests::expect_confirmed(report, scene, parameters);
         if (*report.lane_graph != *plain.lane_graph) ++changed;
         for (const ProblemEdge& edge : problem.edges) {
             if (edge.gap && std::ranges::binary_search(report.lane_graph->edges, Edge{edge.i, edge.j}))
@@ -338,9 +319,7 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
         const RldReport cold = solve(scene_now, parameters);
         LaneGraph strange{{{0, 1}}};
         const RldReport dropped = solve(scene_now, parameters, {}, &strange);
-        ASSERT_EQ(dropped.status, cold.status);
-        if (cold.status != SolveStatus::optimal) continue;
-        EXPECT_NEAR(*dropped.objective, *cold.objective, 1e-6);
+        if (!tests::agrees(dropped, cold)) continue;
         RldParameters other_weights;
         other_weights.w_p = 0.0;
         other_weights.w_s = 3.0;
@@ -348,23 +327,15 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
         for (const LaneGraph& start : {*cold.lane_graph, other}) {
             ++started;
             const RldReport warm = solve(scene_now, parameters, {}, &start);
-            ASSERT_EQ(warm.status, SolveStatus::optimal) << warm.message;
-            EXPECT_NEAR(*warm.objective, *cold.objective, 1e-6);
-            EXPECT_THAT(check(scene_now, parameters, *warm.lane_graph, {true, *warm.objective, warm.bound})
-                            .violations,
-                        testing::IsEmpty());
+            EXPECT_TRUE(tests::agrees(warm, cold));
+            tests::expect_confirmed(warm, scene_now, parameters);
         }
     }
     EXPECT_GT(started, 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(exact_solver_cases()),
-                         [](const auto& test) {
-                             std::string name = std::string(test.param.entry->name) + "_" +
-                                                std::string(to_string(test.param.formulation));
-                             std::ranges::replace(name, '-', '_');
-                             return name;
-                         });
+                         [](const auto& test) { return case_name(test.param); });
 
 }  // namespace
 }  // namespace conelane

@@ -6,20 +6,14 @@
 #include "solvers/milp/detail/own_process.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
 #include <chrono>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <functional>
-#include <memory>
 #include <new>
 #include <stdexcept>
-#include <string>
 #include <thread>
-#include <utility>
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace conelane {

@@ -11,20 +11,11 @@
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <optional>
 #include <ostream>
 #include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -207,12 +198,8 @@ TEST_P(SolverRobustness, SolvesTheSameInThreads) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, SolverRobustness, testing::ValuesIn(solver_cases()), [](const auto& test) {
-    std::string name =
-        std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
-    std::ranges::replace(name, '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Registry, SolverRobustness, testing::ValuesIn(solver_cases()),
+                         [](const auto& test) { return case_name(test.param); });
 
 /// A backend that fails in one of several ways.
 class FailingMilpSolver : public MilpSolver {

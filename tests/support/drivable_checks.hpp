@@ -4,14 +4,9 @@
 #include "model/geometry.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/drivable_courses.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <iterator>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane::tests {
 

@@ -1,15 +1,10 @@
 #pragma once
 
 #include "evaluation/files/input_error.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <iterator>
-#include <string>
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace conelane {

@@ -2,13 +2,7 @@
 
 #include "conelane/planner.hpp"
 #include "tests/support/drivable_checks.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string_view>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 

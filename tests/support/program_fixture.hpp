@@ -2,16 +2,8 @@
 
 #include "tests/support/file_test.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 namespace conelane {
@@ -36,6 +28,36 @@ class ProgramFixture : public FileTest {
         std::filesystem::remove(path("stdout"));
         std::filesystem::remove(path("stderr"));
         return outcome;
+    }
+
+    /// Runs `conelane ARGUMENTS`, which has to succeed: a failure ends the test.
+    Outcome run_well(const std::string& arguments) {
+        Outcome outcome = run(arguments);
+        if (outcome.exit_code == 0) return outcome;
+        throw std::runtime_error("conelane " + arguments + " ends by " + std::to_string(outcome.exit_code) +
+                                 ": " + outcome.errors);
+    }
+
+    /// Starts `conelane ARGUMENTS` in a process group of its own, with its output in files.
+    [[nodiscard]] pid_t start(const std::string& arguments) const {
+        const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
+                                    arguments + " >stdout 2>stderr";
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::setpgid(0, 0);
+            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            ::_exit(127);
+        }
+        ::setpgid(child, child);
+        return child;
+    }
+
+    /// Sends the signal. Whether the program was still running when the signal came.
+    static bool end_by(pid_t started, int signal) {
+        ::kill(-started, signal);
+        int status = 0;
+        EXPECT_EQ(::waitpid(started, &status, 0), started);
+        return WIFSIGNALED(status) && WTERMSIG(status) == signal;
     }
 
     /// Bad input: exit code 2, one line on stderr that holds every one of `names`, and no new file.

@@ -2,12 +2,7 @@
 
 #include "evaluation/files/lane_file.hpp"
 #include "tests/support/program_fixture.hpp"
-
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 

@@ -39,4 +39,20 @@ inline Scene random_scene(std::uint64_t seed, std::size_t cones) {
     return scene;
 }
 
+/// Cones anywhere in a rectangle that begins at the car: the car looks along +x, from the middle of one side.
+inline Scene strewn_scene(std::size_t cones, double ahead_m, double across_m, std::uint64_t seed = 7,
+                          const Point& car = {0.0, 0.0}) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::uniform_real_distribution<double> ahead(0.0, ahead_m);
+    boost::random::uniform_real_distribution<double> left(-0.5 * across_m, 0.5 * across_m);
+    Scene scene;
+    scene.id = "strewn_" + std::to_string(seed);
+    scene.pose.position = car;
+    for (std::size_t i = 0; i < cones; ++i) {
+        const double x_m = ahead(random);
+        scene.cones.push_back({static_cast<ConeId>(i), car + Point(x_m, left(random))});
+    }
+    return scene;
+}
+
 }  // namespace conelane::tests

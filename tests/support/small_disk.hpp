@@ -1,10 +1,7 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <utility>
+#include "tests/support/testing.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/mount.h>
 
 namespace conelane {

@@ -2,10 +2,7 @@
 
 #include "conelane/formulation.hpp"
 #include "solvers/registry.hpp"
-#include "tests/support/printers.hpp"
-
-#include <ostream>
-#include <vector>
+#include "tests/support/testing.hpp"
 
 namespace conelane::tests {
 
@@ -17,6 +14,11 @@ struct SolverCase {
         *out << c.entry->name << ' ' << to_string(c.formulation);
     }
 };
+
+inline std::string case_name(const SolverCase& solver) {
+    return conelane::case_name(std::string(solver.entry->name) + "_" +
+                               std::string(to_string(solver.formulation)));
+}
 
 /// All solvers, on every formulation that they use.
 inline std::vector<SolverCase> solver_cases() {

@@ -1,9 +1,17 @@
 #include "tests/support/test_paths.hpp"
 
+#include <fstream>
+#include <iterator>
+
 namespace conelane {
 
 std::filesystem::path source_directory() {
     return CONELANE_SOURCE_DIR;
+}
+
+std::string source_text(const std::string& file) {
+    std::ifstream stream(source_directory() / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 std::string conelane_program() {

@@ -8,6 +8,9 @@ namespace conelane {
 /// The folder of the sources: weight files, stored instances, and beside it recorded tracks.
 [[nodiscard]] std::filesystem::path source_directory();
 
+/// The text of a file of this checkout.
+[[nodiscard]] std::string source_text(const std::string& file);
+
 /// The program `conelane`.
 [[nodiscard]] std::string conelane_program();
 

@@ -2,18 +2,10 @@
 
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace conelane {

@@ -3,14 +3,9 @@
 #include "graph_search/clc/clc_detector.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
 #include <thread>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

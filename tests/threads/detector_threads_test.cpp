@@ -3,15 +3,9 @@
 #include "conelane/detectors.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string_view>
 #include <thread>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

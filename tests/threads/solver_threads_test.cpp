@@ -4,12 +4,9 @@
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <memory>
 #include <thread>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

@@ -1,11 +1,8 @@
 #include "conelane/lane_graph.hpp"
 #include "conelane/scene.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstddef>
 #include <thread>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

@@ -5,13 +5,7 @@
 #include "conelane/drivable_lane.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -3,14 +3,9 @@
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/drivable_checks.hpp"
 #include "tests/support/drivable_courses.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <random>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane::tests {
 namespace {

@@ -2,15 +2,10 @@
 #include "conelane/invalid_input.hpp"
 #include "tests/support/drivable_checks.hpp"
 #include "tests/support/drivable_courses.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <functional>
-#include <limits>
 #include <random>
-#include <string>
-
-#include <gtest/gtest.h>
 
 namespace conelane::tests {
 namespace {
@@ -91,12 +86,7 @@ TEST(DrivableLane, EndsWhereItsBoundariesMeet) {
 }
 
 void expect_refused(const Course& course, const std::string& key, const DrivableOptions& options = {}) {
-    try {
-        static_cast<void>(course.driven(options));
-        ADD_FAILURE() << "not refused: " << key;
-    } catch (const InvalidInput& error) {
-        EXPECT_EQ(error.key(), key) << error.what();
-    }
+    EXPECT_EQ(refused_key([&] { (void)course.driven(options); }), key);
 }
 
 TEST(DrivableLane, RefusesInvalidLanes) {

@@ -3,16 +3,9 @@
 #include "model/geometry.hpp"
 #include "tests/support/drivable_checks.hpp"
 #include "tests/support/drivable_courses.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <utility>
-#include <vector>
+#include "tests/support/testing.hpp"
 
 #include <Eigen/Geometry>
-#include <gtest/gtest.h>
 
 namespace conelane::tests {
 namespace {

@@ -5,16 +5,7 @@
 #include "tests/support/drivable_checks.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/recorded_tracks.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::tests {
 namespace {

@@ -8,15 +8,9 @@
 #include "solvers/registry.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -192,8 +186,8 @@ using CheckExactly = ProgramFixture;
 
 // An objective whose error is below the checker's tolerance, but above the rounding of doubles.
 TEST_F(CheckExactly, TheCommandFindsErrorsBelowTheCheckersTolerance) {
-    ASSERT_EQ(run("scenes --tracks generated:kidney --every 60 --out s.scenes.jsonl").exit_code, 0);
-    ASSERT_EQ(run("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl").exit_code, 0);
+    run_well("scenes --tracks generated:kidney --every 60 --out s.scenes.jsonl");
+    run_well("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl");
     const std::string check = "check --scenes s.scenes.jsonl --solutions ";
     const Outcome honest = run(check + "s.solutions.jsonl --exact");
     EXPECT_EQ(honest.exit_code, 0) << honest.output;
@@ -207,7 +201,7 @@ TEST_F(CheckExactly, TheCommandFindsErrorsBelowTheCheckersTolerance) {
     const double objective = std::stod(forged.substr(value, end - value));
     forged.replace(value, end - value, std::to_string(std::round(objective * 1e6) / 1e6));
     file_with(forged, "forged.solutions.jsonl");
-    EXPECT_EQ(run(check + "forged.solutions.jsonl").exit_code, 0);
+    run_well(check + "forged.solutions.jsonl");
     const Outcome forgery = run(check + "forged.solutions.jsonl --exact");
     EXPECT_EQ(forgery.exit_code, 1);
     EXPECT_THAT(forgery.output, testing::HasSubstr("in rational arithmetic the objective is"));

@@ -8,14 +8,10 @@
 #include "evaluation/checking/claim_verdict.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <limits>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -59,9 +55,7 @@ TEST(LaneGraphSearch, AgreesWithThePairSearch) {
 ///     2 ----- 3
 /// car >                        0 ----- 1
 TEST(LaneGraphSearch, WithThePairingOfThePaperAPathOfFarConesMayComeFirst) {
-    Scene scene;
-    for (const Point& position : {Point(11.0, -1.75), Point(14.2, -1.75), Point(1.0, 1.75), Point(4.2, 1.75)})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    Scene scene = tests::cones_at({{11.0, -1.75}, {14.2, -1.75}, {1.0, 1.75}, {4.2, 1.75}});
     RldParameters parameters;
     parameters.d_h = 20.0;  // so all edges are along the heading
     EXPECT_FALSE(search_lane_graph(scene, parameters, kNoLimit).witness);

@@ -1,11 +1,7 @@
 #include "evaluation/files/atomic_file.hpp"
 
 #include "tests/support/file_test.hpp"
-
-#include <filesystem>
-#include <string>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -6,17 +6,10 @@
 #include "graph_search/front/front_judge_features.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 #include "tests/support/front_fixture.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <array>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane {
@@ -36,13 +29,8 @@ TEST(FrontWeightsFile, HasASetForColors) {
     weights.colored->least_trust = 0.625;
     const std::string text = front_weights_json(weights, "{}");
     EXPECT_TRUE(parse_front_weights(text) == weights);
-    const auto key_of = [](const nlohmann::ordered_json& json) -> std::string {
-        try {
-            (void)parse_front_weights(json.dump());
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+    const auto key_of = [](const nlohmann::ordered_json& json) {
+        return refused_key([&] { (void)parse_front_weights(json.dump()); });
     };
     for (const std::string key : {"colored_start_linear", "colored_least_trust"}) {
         auto json = nlohmann::ordered_json::parse(text);
@@ -52,19 +40,12 @@ TEST(FrontWeightsFile, HasASetForColors) {
         EXPECT_TRUE(key_of(json).starts_with("colored_")) << "of version 3";
     }
     weights.colored->stop.linear.pop_back();
-    try {
-        validate(weights);
-        FAIL();
-    } catch (const InvalidInput& error) {
-        EXPECT_EQ(error.key(), "colored_stop.linear");
-    }
+    EXPECT_EQ(refused_key([&] { validate(weights); }), "colored_stop.linear");
 }
 
 TEST(FrontWeightsFile, TheLibraryHasTheWeightsOfItsFile) {
-    std::ifstream file(source_directory() / "graph_search" / "weights" / "front.json");
-    std::ostringstream text;
-    text << file.rdbuf();
-    EXPECT_TRUE(parse_front_weights(text.str()) == shipped_front_weights());
+    EXPECT_TRUE(parse_front_weights(source_text("graph_search/weights/front.json")) ==
+                shipped_front_weights());
 }
 
 /// A file of version 1 has no features of colors; its numbers are those of the other features.
@@ -124,17 +105,8 @@ TEST(FrontWeightsFile, OfVersionOneKnowNoColors) {
 
 TEST(FrontWeightsFile, ErrorsNameTheKey) {
     const std::string good = front_weights_json(random_front_weights(8), "{}");
-    const auto key_of = [&](const std::string& from, const std::string& to) -> std::string {
-        std::string text = good;
-        const std::size_t at = text.find(from);
-        EXPECT_NE(at, std::string::npos) << from;
-        text.replace(at, from.size(), to);
-        try {
-            (void)parse_front_weights(text);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+    const auto key_of = [&](const std::string& from, const std::string& to) {
+        return refused_key([&] { (void)parse_front_weights(with_other(good, from, to)); });
     };
     EXPECT_EQ(key_of("\"version\": 2", "\"version\": 4"), "version");
     EXPECT_EQ(key_of("\"version\": 2", "\"version\": 3"), "colored_extend_hidden");

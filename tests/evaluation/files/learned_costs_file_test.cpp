@@ -7,34 +7,16 @@
 #include "evaluation/files/parameter_tag.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/learned_costs.hpp"
-
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <string>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
 
 class LearnedCostsFileTest : public FileTest {};
 
-std::string with(std::string text, const std::string& part, const std::string& other) {
-    const std::size_t at = text.find(part);
-    EXPECT_NE(at, std::string::npos) << part;
-    return text.replace(at, part.size(), other);
-}
-
 std::string fault_of(const std::string& text) {
-    try {
-        static_cast<void>(parse_learned_costs(text));
-    } catch (const InvalidInput& error) {
-        return error.what();
-    }
-    return "";
+    return refusal([&] { (void)parse_learned_costs(text); });
 }
 
 TEST_F(LearnedCostsFileTest, KeepsEveryBit) {
@@ -51,22 +33,22 @@ TEST_F(LearnedCostsFileTest, KeepsEveryBit) {
 TEST_F(LearnedCostsFileTest, ABadFileIsOneClearError) {
     const std::string text = learned_costs_json(LearnedCosts::zero(1), "{}");
     EXPECT_EQ(fault_of(""), "weights: line 1: must be a JSON object, as `conelane train rld` writes it");
-    EXPECT_EQ(fault_of(with(text, "\"version\": 1", "\"version\": 2")), "version: must be 1");
-    EXPECT_EQ(fault_of(with(text, "\"version\": 1,", "")), "version: is missing");
+    EXPECT_EQ(fault_of(with_other(text, "\"version\": 1", "\"version\": 2")), "version: must be 1");
+    EXPECT_EQ(fault_of(with_other(text, "\"version\": 1,", "")), "version: is missing");
     EXPECT_EQ(
-        fault_of(with(text, "\"spacing\"", "\"spaces\"")),
+        fault_of(with_other(text, "\"spacing\"", "\"spaces\"")),
         "features: 'edge' has 'spaces' at place 1, unlike the library: the weights are of another version");
-    EXPECT_EQ(fault_of(with(text, "\"far_end\":[", "\"end\":[")),
+    EXPECT_EQ(fault_of(with_other(text, "\"far_end\":[", "\"end\":[")),
               "features: 'end' is not a list of the library");
-    EXPECT_EQ(fault_of(with(text, "\"turn_output\": [0]", "\"turn_output\": [0,0]")),
+    EXPECT_EQ(fault_of(with_other(text, "\"turn_output\": [0]", "\"turn_output\": [0,0]")),
               "turn.hidden: must have 28 numbers, not 14");
-    EXPECT_EQ(fault_of(with(text, "\"turn_output\": [0]", "\"turn_output\": [true]")),
+    EXPECT_EQ(fault_of(with_other(text, "\"turn_output\": [0]", "\"turn_output\": [true]")),
               "turn_output: number 0 (from 0) is not a number");
-    EXPECT_EQ(fault_of(with(text, "\"turn_output\": [0]", "\"turn_output\": [1e400]")),
+    EXPECT_EQ(fault_of(with_other(text, "\"turn_output\": [0]", "\"turn_output\": [1e400]")),
               "turn.output: must hold numbers between -1e6 and 1e6");
-    EXPECT_EQ(fault_of(with(text, "\"turn_output\"", "\"turns_output\"")),
+    EXPECT_EQ(fault_of(with_other(text, "\"turn_output\"", "\"turns_output\"")),
               "turns_output: is not a key of learned costs");
-    EXPECT_EQ(fault_of(with(text, "\"turn_output\": [0],", "")), "turn_output: is missing");
+    EXPECT_EQ(fault_of(with_other(text, "\"turn_output\": [0],", "")), "turn_output: is missing");
 }
 
 TEST_F(LearnedCostsFileTest, IsNamedByParameters) {

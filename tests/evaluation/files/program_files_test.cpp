@@ -7,15 +7,9 @@
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/cbc_solver.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 namespace conelane {
@@ -209,14 +203,7 @@ TEST(SolutionFiles, RemarksGiveValuesThatAFormatLacks) {
 }
 
 TEST(SolutionFiles, BadOnesNameTheirLine) {
-    const auto complaint = [](const std::string& text) -> std::string {
-        try {
-            (void)read(text);
-        } catch (const InvalidInput& error) {
-            return error.what();
-        }
-        return "none";
-    };
+    const auto complaint = [](const std::string& text) { return refusal([&] { (void)read(text); }); };
     EXPECT_EQ(complaint(""), "line 1: the file is empty");
     EXPECT_EQ(complaint("Optimal - objective value 1\n 0 q 1 1\n"), "line 2: the program has no column q");
     EXPECT_EQ(complaint("Optimal - objective value 1\n 0 x\n"), "line 2: must be INDEX NAME VALUE");

@@ -2,20 +2,12 @@
 
 #include "conelane/invalid_input.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -47,19 +39,11 @@ TEST(RankNetFile, GivesTheSameWeightsBack) {
 
 TEST(RankNetFile, ErrorsNameTheirKey) {
     const std::string json = rank_net_json(small_network(), "{}");
-    const auto key_of = [](const std::string& text) -> std::string {
-        try {
-            (void)parse_rank_net(text);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+    const auto key_of = [](const std::string& text) {
+        return refused_key([&] { (void)parse_rank_net(text); });
     };
     const auto with = [&](const std::string& old_text, const std::string& new_text) {
-        std::string changed = json;
-        const std::size_t at = changed.find(old_text);
-        EXPECT_NE(at, std::string::npos) << old_text;
-        return changed.replace(at, old_text.size(), new_text);
+        return with_other(json, old_text, new_text);
     };
     EXPECT_EQ(key_of(json), "accepted");
     EXPECT_EQ(key_of("no JSON"), "weights");
@@ -75,14 +59,6 @@ TEST(RankNetFile, ErrorsNameTheirKey) {
     EXPECT_EQ(key_of(with("\"hidden\": [", "\"hidden\": [5,")), "hidden[0]");
     EXPECT_EQ(key_of(with("\"output_bias\": ", "\"output_bias\": null, \"x\": ")), "output_bias");
     EXPECT_THROW((void)rank_net_json(small_network(), "[]"), InvalidInput);
-}
-
-std::string shipped_file(const std::string& name) {
-    std::ifstream stream(source_directory() / "graph_search" / "weights" / name, std::ios::binary);
-    EXPECT_TRUE(stream) << name;
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
 }
 
 /// As bits, so that zeros of either sign differ.
@@ -106,8 +82,10 @@ TEST(RankNetFile, TheNetworksInTheLibraryAreThoseOfTheirFilesToTheLastBit) {
         EXPECT_EQ(std::bit_cast<std::uint32_t>(built_in.output_bias),
                   std::bit_cast<std::uint32_t>(read.output_bias));
     };
-    expect_equal(paper_rank_net_weights(), parse_rank_net(shipped_file("rank_net_paper.json")));
-    expect_equal(extended_rank_net_weights(), parse_rank_net(shipped_file("rank_net_extended.json")));
+    expect_equal(paper_rank_net_weights(),
+                 parse_rank_net(source_text("graph_search/weights/rank_net_paper.json")));
+    expect_equal(extended_rank_net_weights(),
+                 parse_rank_net(source_text("graph_search/weights/rank_net_extended.json")));
 }
 
 TEST(RankNetFile, TheShippedNetworksTellLanesApart) {

@@ -2,18 +2,10 @@
 
 #include "conelane/invalid_input.hpp"
 #include "tests/support/file_test.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <limits>
-#include <string>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -319,12 +311,8 @@ TEST_F(SceneFileTest, RefusesToWriteScenesThatItCouldNotRead) {
     const fs::path file = file_with("old");
     AnnotatedScene scene;
     scene.scene = {"a", {}, {{1, {0.0, kInfinity}}}};
-    try {
-        write_scenes(file, std::vector{scene});
-        FAIL() << "an infinite coordinate was written";
-    } catch (const InvalidInput& error) {
-        EXPECT_STREQ(error.what(), "scenes[0].cones[0].y: must be a finite number");
-    }
+    EXPECT_EQ(refusal([&] { write_scenes(file, std::vector{scene}); }),
+              "scenes[0].cones[0].y: must be a finite number");
     EXPECT_EQ(text_of(file), "old");
     EXPECT_EQ(files_in_folder(), 1u);
 }

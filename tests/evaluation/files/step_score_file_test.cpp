@@ -2,17 +2,11 @@
 
 #include "conelane/invalid_input.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
 #include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -36,19 +30,11 @@ TEST(StepScoreFile, GivesTheSameScoresBack) {
 
 TEST(StepScoreFile, ErrorsNameTheirKey) {
     const std::string json = step_scores_json(uneven_scores(), "{}");
-    const auto key_of = [](const std::string& text) -> std::string {
-        try {
-            (void)parse_step_scores(text);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+    const auto key_of = [](const std::string& text) {
+        return refused_key([&] { (void)parse_step_scores(text); });
     };
     const auto with = [&](const std::string& old_text, const std::string& new_text) {
-        std::string changed = json;
-        const std::size_t at = changed.find(old_text);
-        EXPECT_NE(at, std::string::npos) << old_text;
-        return changed.replace(at, old_text.size(), new_text);
+        return with_other(json, old_text, new_text);
     };
     EXPECT_EQ(key_of(json), "accepted");
     EXPECT_EQ(key_of("no JSON"), "scores");
@@ -70,16 +56,8 @@ TEST(StepScoreFile, ErrorsNameTheirKey) {
     EXPECT_THROW((void)step_scores_json(uneven_scores(), "[]"), InvalidInput);
 }
 
-std::string shipped_file(const std::string& name) {
-    std::ifstream stream(source_directory() / "graph_search" / "weights" / name, std::ios::binary);
-    EXPECT_TRUE(stream) << name;
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-}
-
 TEST(StepScoreFile, TheScoresInTheLibraryAreThoseOfTheirFileToTheLastBit) {
-    const std::string file = shipped_file("step_scores.json");
+    const std::string file = source_text("graph_search/weights/step_scores.json");
     EXPECT_EQ(shipped_step_score_file(), file);
     const std::vector<double> read = parse_step_scores(file).values;
     const std::vector<double> built_in = shipped_step_scores()->values;

@@ -1,15 +1,8 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
-
-#include <algorithm>
-#include <cstdint>
-#include <map>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -100,12 +93,8 @@ TEST(PersistentFalsePositives, BytesDependNeitherOnThreadsNorOnOtherScenes) {
 TEST(PersistentFalsePositives, MoreThanTheNumberOfIdsAreRefused) {
     SceneOptions wanted = options({0.99}, {30.0});
     wanted.persistent = true;
-    try {
-        static_cast<void>(generate_scenes(straight(), wanted));
-        FAIL() << "not refused";
-    } catch (const InvalidInput& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("fp: 0.99 gives"));
-    }
+    EXPECT_THAT(refusal([&] { (void)generate_scenes(straight(), wanted); }),
+                testing::HasSubstr("fp: 0.99 gives"));
 }
 
 }  // namespace

@@ -1,15 +1,6 @@
 #include "evaluation/scenes/scene_generation.hpp"
+#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

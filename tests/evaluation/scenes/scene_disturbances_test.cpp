@@ -1,20 +1,8 @@
 // Disturbances of a scene: false positives, noise, wrong colors, confidences.
 
 #include "evaluation/scenes/scene_generation.hpp"
+#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <numbers>
-#include <set>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

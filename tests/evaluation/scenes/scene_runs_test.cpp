@@ -1,16 +1,8 @@
 // What the car sees of a track, and the ground truth in it.
 
 #include "evaluation/scenes/scene_generation.hpp"
+#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

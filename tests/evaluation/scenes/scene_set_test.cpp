@@ -6,16 +6,7 @@
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/tracks/track_spec.hpp"
 #include "experiments/comparison/runner.hpp"
-
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

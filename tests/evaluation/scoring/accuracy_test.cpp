@@ -1,11 +1,6 @@
 #include "evaluation/scoring/score.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <cstddef>
-#include <numbers>
-#include <utility>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,11 +1,6 @@
 #include "evaluation/scoring/centre_line_error.hpp"
 
-#include <cmath>
-#include <numbers>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,10 +1,7 @@
 #include "evaluation/scoring/divergence.hpp"
 
 #include "conelane/invalid_input.hpp"
-
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

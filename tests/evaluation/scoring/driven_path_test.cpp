@@ -2,10 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/score.hpp"
-
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -2,16 +2,7 @@
 
 #include "evaluation/scoring/score.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <cmath>
-#include <numbers>
-#include <optional>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,13 +1,8 @@
 #include "evaluation/scoring/score_table.hpp"
 
 #include "evaluation/scoring/published_figures.hpp"
+#include "tests/support/testing.hpp"
 
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane {

@@ -3,16 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

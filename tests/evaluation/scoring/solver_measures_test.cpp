@@ -5,13 +5,7 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/scoring/wilcoxon.hpp"
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

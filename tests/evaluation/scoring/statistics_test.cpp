@@ -1,12 +1,9 @@
 #include "evaluation/scoring/statistics.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cmath>
 #include <numeric>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

@@ -7,13 +7,7 @@
 #include "experiments/comparison/runner.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -1,11 +1,7 @@
 #include "experiments/comparison/lane_log.hpp"
 
 #include "tests/support/file_test.hpp"
-
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -1,15 +1,8 @@
 #include "experiments/comparison/summary.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <deque>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <vector>
+#include "tests/support/testing.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include <deque>
 
 namespace conelane::experiments {
 namespace {

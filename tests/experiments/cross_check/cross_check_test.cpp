@@ -13,21 +13,8 @@
 #include "solvers/registry.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <memory>
-#include <set>
-#include <sstream>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/six_cone_lane.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -44,11 +31,7 @@ using testing::UnorderedElementsAre;
 CrossCheckCase straight_case() {
     CrossCheckCase drawn;
     drawn.kind = "by hand";
-    drawn.scene.id = "straight";
-    for (const double y : {1.75, -1.75}) {
-        for (const double x : {1.0, 4.2, 7.4})
-            drawn.scene.cones.push_back({static_cast<ConeId>(drawn.scene.cones.size()), {x, y}});
-    }
+    drawn.scene = tests::six_cone_lane();
     drawn.scene.cones.push_back({6, {-9.0, 0.3}});
     return drawn;
 }
@@ -360,8 +343,7 @@ TEST_F(CrossCheckRun, AWrongSolverIsFoundShrunkAndWrittenToBeReplayed) {
         const std::string name = entry.path().string().substr(0, entry.path().string().size() - 10);
         EXPECT_THAT(text_of(name + ".mps"), HasSubstr("ENDATA"));
         // A replay without that solver finds no difference.
-        const Outcome replayed = run("cross-check --replay " + entry.path().string());
-        EXPECT_EQ(replayed.exit_code, 0) << replayed.errors;
+        const Outcome replayed = run_well("cross-check --replay " + entry.path().string());
         EXPECT_EQ(replayed.output, "same optimum\n");
     }
     EXPECT_EQ(stored, summary.outcomes.at(CrossCheckOutcome::differ));
@@ -397,8 +379,7 @@ TEST_F(CrossCheckRun, AnotherDifferenceDoesNotReplaceTheOneThatWasFound) {
 }
 
 TEST_F(CrossCheckRun, TheProgramSaysWhatItFoundAndWhatIsWrong) {
-    const Outcome good = run("cross-check --out cases --cases 6 --solvers path-pair,cbc --threads 2");
-    EXPECT_EQ(good.exit_code, 0) << good.errors;
+    const Outcome good = run_well("cross-check --out cases --cases 6 --solvers path-pair,cbc --threads 2");
     EXPECT_THAT(good.output, HasSubstr("6 cases: "));
     EXPECT_THAT(good.output, HasSubstr(" 0 differ; "));
     EXPECT_THAT(good.output, HasSubstr("6 of them by this run"));

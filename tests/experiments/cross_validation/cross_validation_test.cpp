@@ -9,14 +9,8 @@
 #include "experiments/comparison/known_detectors.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
 #include "tests/support/program_fixture.hpp"
+#include "tests/support/testing.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -39,8 +33,7 @@ std::vector<std::string> courses_learned(const std::string& weights) {
 class CrossValidation : public ProgramFixture {};
 
 TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
-    const Outcome outcome = run(kFolds + "front,clc,delaunay-beam,rld-pair,rld-learned");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const Outcome outcome = run_well(kFolds + "front,clc,delaunay-beam,rld-pair,rld-learned");
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/step_scores.json"))),
                 testing::ElementsAre("curvy", "straight"));
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/rank_net_extended.json"))),
@@ -70,15 +63,14 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
 }
 
 TEST_F(CrossValidation, ResumesAfterAStop) {
-    ASSERT_EQ(run(kFolds + "clc-paper,delaunay-beam").exit_code, 0);
+    run_well(kFolds + "clc-paper,delaunay-beam");
     const std::string net = text_of(path("cv/folds/a/rank_net_paper.json"));
     const std::string lanes = text_of(path("cv/delaunay-beam.lanes.jsonl"));
     const auto learned = std::filesystem::last_write_time(path("cv/folds/a/rank_net_paper.json"));
     std::filesystem::remove(path("cv/folds/b/rank_net_paper.json"));
     std::filesystem::remove(path("cv/clc-paper.lanes.jsonl"));
     std::filesystem::remove(path("cv/results.jsonl"));
-    const Outcome again = run(kFolds + "clc-paper,delaunay-beam");
-    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    const Outcome again = run_well(kFolds + "clc-paper,delaunay-beam");
     EXPECT_EQ(std::filesystem::last_write_time(path("cv/folds/a/rank_net_paper.json")), learned);
     EXPECT_EQ(text_of(path("cv/folds/a/rank_net_paper.json")), net);
     EXPECT_EQ(text_of(path("cv/delaunay-beam.lanes.jsonl")), lanes) << "not driven again";
@@ -89,17 +81,16 @@ TEST_F(CrossValidation, ResumesAfterAStop) {
     EXPECT_EQ(other.exit_code, 2);
     EXPECT_THAT(other.errors, HasSubstr("--overwrite"));
     EXPECT_EQ(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "nothing was touched";
-    ASSERT_EQ(run(kFolds + "clc-paper,delaunay-beam --seed 3 --overwrite").exit_code, 0);
+    run_well(kFolds + "clc-paper,delaunay-beam --seed 3 --overwrite");
     EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "retrained";
 }
 
 TEST_F(CrossValidation, TakesTheLearnedFilesOfAnother) {
-    ASSERT_EQ(run(kFolds + "delaunay-beam,rld-pair").exit_code, 0);
+    run_well(kFolds + "delaunay-beam,rld-pair");
     const std::string again =
         "cross-validate --family a=generated:circle --family b=generated:curvy --folds cv/folds "
         "--condition paper --fp 0.3 --range 30 --every 40 --methods delaunay-beam,rld-pair --out ";
-    const Outcome outcome = run(again + "again");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    run_well(again + "again");
     const std::vector<LaneRecord> learned = read_lanes(path("cv/delaunay-beam.lanes.jsonl"));
     const std::vector<LaneRecord> taken = read_lanes(path("again/delaunay-beam.lanes.jsonl"));
     ASSERT_EQ(taken.size(), learned.size());
@@ -122,13 +113,12 @@ TEST_F(CrossValidation, TakesTheLearnedFilesOfAnother) {
 
 TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
     const std::string methods = "front,rld-learned,rld-shape,delaunay-beam";
-    ASSERT_EQ(run(kFolds + methods).exit_code, 0);
+    run_well(kFolds + methods);
     const std::string colors =
         "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
         "--learn-condition paper --learn-every 60 --condition paper --fp 0.3 --range 30 --every 40 "
         "--front-steps 0.002 --rld-steps 0.002 --colors-from cv/folds ";
-    const Outcome outcome = run(colors + "--color --color-wrong 0.05 --out colored --methods " + methods);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    run_well(colors + "--color --color-wrong 0.05 --out colored --methods " + methods);
     for (const std::string fold : {"a", "b"}) {
         const std::string first = text_of(path("cv/folds/" + fold + "/front.json"));
         const std::string second = text_of(path("colored/folds/" + fold + "/front.json"));
@@ -200,8 +190,7 @@ TEST_F(CrossValidation, AComparisonMarksTheCoursesThatADetectorHasLearnedFrom) {
     EXPECT_TRUE(training_courses("rld-pair").empty());
     EXPECT_TRUE(training_courses("clc-longest").empty());
     const std::string common = "compare --methods rld-pair,clc --every 60 --fp 0 --out ";
-    const Outcome seen = run(common + "seen --tracks generated:curvy@1 generated:circle");
-    ASSERT_EQ(seen.exit_code, 0) << seen.errors;
+    const Outcome seen = run_well(common + "seen --tracks generated:curvy@1 generated:circle");
     EXPECT_THAT(seen.output, HasSubstr("* with courses that the method has learned from"));
     const Outcome unseen = run(common + "unseen --tracks generated:circle");
     EXPECT_THAT(unseen.output, Not(HasSubstr("learned from")));

@@ -8,24 +8,8 @@
 #include "tests/support/slowness.hpp"
 #include "tests/support/solver_cases.hpp"
 #include "tests/support/test_paths.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <numbers>
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <zlib.h>
 
 namespace conelane::experiments {
@@ -229,8 +213,7 @@ TEST_F(Instances, OpenProgramsAreCountedInOneWay) {
 TEST_F(Instances, TheProgramWritesFilesThatUnpack) {
     const std::string arguments =
         " --tracks generated:curvy --fp 0.5 --every 1000 --nearest 12,16 --seed 3 --out ";
-    const Outcome outcome = run("instances" + arguments + "made");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const Outcome outcome = run_well("instances" + arguments + "made");
     EXPECT_THAT(outcome.output, HasSubstr("4 programs in made: "));
     const std::string name = "curvy_pose_0000_fp_0.50_range_30_n12.tight";
     const std::string text = unpacked(path("made") / (name + ".mps.gz"));
@@ -240,10 +223,9 @@ TEST_F(Instances, TheProgramWritesFilesThatUnpack) {
 }
 
 TEST_F(Instances, EachObjectiveHasProgramsAndLinesInTheIndex) {
-    const Outcome outcome =
-        run("instances --tracks generated:curvy --fp 0.5 --every 1000 --nearest 12,all --limit 1 --seed 3 "
-            "--params default,shape --pairing near_far,paper --max-printed-cones 20 --out made");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const Outcome outcome = run_well(
+        "instances --tracks generated:curvy --fp 0.5 --every 1000 --nearest 12,all --limit 1 --seed 3 "
+        "--params default,shape --pairing near_far,paper --max-printed-cones 20 --out made");
     EXPECT_THAT(outcome.output, HasSubstr("12 programs in made: "));
     const std::string scene = "curvy_pose_0000_fp_0.50_range_30_";
     std::set<std::string> wanted;
@@ -291,9 +273,7 @@ TEST_F(Instances, AClassIsAboutBothEngines) {
 
 TEST_F(Instances, OfAnotherSolverHaveTheSameOptima) {
     if (std::system("command -v cbc >/dev/null") != 0) GTEST_SKIP() << "there is no program cbc";
-    ASSERT_EQ(
-        run("instances --tracks generated:circle --fp 0.5 --every 1000 --nearest 12 --out made").exit_code,
-        0);
+    run_well("instances --tracks generated:circle --fp 0.5 --every 1000 --nearest 12 --out made");
     const std::map<std::string, Known> known = read_solu(path("made") / "conelane.solu");
     ASSERT_EQ(known.size(), 2u);
     for (const auto& [name, optimum] : known) {

@@ -1,11 +1,6 @@
 #include "experiments/options/help_formatter.hpp"
 
-#include <memory>
-#include <sstream>
-#include <string>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -4,11 +4,8 @@
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/program_fixture.hpp"
+#include "tests/support/testing.hpp"
 
-#include <string>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -20,10 +17,8 @@ class RaceCommand : public ProgramFixture {};
 
 TEST_F(RaceCommand, AnyNumberOfThreadsGivesTheSameFiles) {
     for (const char* const threads : {"1", "2"}) {
-        const Outcome outcome =
-            run("race --tracks generated:kidney,circle --methods front,truth --fp 0,0.3 --seed 1,2 --out t" +
-                std::string(threads) + " --replay all --threads " + threads);
-        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+        run_well("race --tracks generated:kidney,circle --methods front,truth --fp 0,0.3 --seed 1,2 --out t" +
+                 std::string(threads) + " --replay all --threads " + threads);
     }
     for (const char* const file : {"race.json", "table.txt", "replay.jsonl"}) {
         EXPECT_EQ(text_of(path("t1") / file), text_of(path("t2") / file)) << file;
@@ -38,8 +33,7 @@ TEST_F(RaceCommand, AnyNumberOfThreadsGivesTheSameFiles) {
 
 TEST_F(RaceCommand, MissionsNeedNoTracks) {
     for (const char* const mission : {"acceleration", "skidpad"}) {
-        const Outcome outcome = run("race --mission " + std::string(mission) + " --methods truth --out out");
-        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+        run_well("race --mission " + std::string(mission) + " --methods truth --out out");
         const nlohmann::json json = nlohmann::json::parse(text_of(path("out") / "race.json"));
         EXPECT_EQ(json.at("races").at(0).at("end"), "finished");
     }
@@ -54,9 +48,7 @@ TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
     file_with(shipped, "folds/a/front.json");
     file_with(other, "folds/b/front.json");
     const auto races = [&](const std::string& options, const std::string& out) {
-        const Outcome outcome =
-            run("race " + options + " --methods front --both --fp 0.3 --condition car --out " + out);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        run_well("race " + options + " --methods front --both --fp 0.3 --condition car --out " + out);
         return nlohmann::json::parse(text_of(path(out) / "race.json")).at("races");
     };
     const nlohmann::json by_shipped = races("--tracks generated:kidney,circle", "shipped");

@@ -8,16 +8,7 @@
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/vehicle.hpp"
 #include "tests/support/recorded_tracks.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

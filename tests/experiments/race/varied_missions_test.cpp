@@ -6,14 +6,7 @@
 #include "experiments/race/course.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -9,15 +9,7 @@
 #include "experiments/studies/reference_problem.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -3,9 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/studies/front_beam.hpp"
 #include "graph_search/front/front_detector.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

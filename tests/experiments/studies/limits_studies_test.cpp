@@ -6,15 +6,10 @@
 #include "experiments/studies/memory.hpp"
 #include "model/deadline.hpp"
 #include "tests/support/straight_scene.hpp"
+#include "tests/support/testing.hpp"
 
 #include <chrono>
-#include <cstddef>
-#include <string>
 #include <thread>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane::experiments {
 namespace {

@@ -3,12 +3,7 @@
 #include "experiments/studies/noise.hpp"
 
 #include "conelane/invalid_input.hpp"
-
-#include <cstddef>
-#include <set>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -6,12 +6,7 @@
 #include "conelane/rld_parameter_sets.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

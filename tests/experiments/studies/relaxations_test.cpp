@@ -5,13 +5,7 @@
 #include "conelane/relaxation_solvers.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -10,17 +10,7 @@
 #include "experiments/studies/text_table.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/straight_scene.hpp"
-
-#include <algorithm>
-#include <map>
-#include <optional>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -7,13 +7,7 @@
 #include "experiments/training/front_scenes.hpp"
 #include "graph_search/front/front_judge_features.hpp"
 #include "tests/support/front_fixture.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -56,15 +50,19 @@ TEST(FrontGradient, AgreesWithFiniteDifferences) {
     check(network.output_bias, derivatives.output_bias);
 }
 
-/// The loss of a scene falls along its gradient by the amount that the gradient predicts.
-TEST(FrontLearner, ItsDerivativesAreThoseOfTheLoss) {
-    const FrontScenes scenes(courses(), {}, 3);
-    const FrontScenes::Drawn drawn = scenes.draw(5);
-    ASSERT_FALSE(drawn.scenes.empty());
+FrontWeights small_weights() {
     FrontWeights weights = random_front_weights(2);
     for_each_block(weights, [](std::span<float> block) {
         for (float& number : block) number *= 0.3F;
     });
+    return weights;
+}
+
+/// The loss of a scene falls along its gradient by the amount that the gradient predicts.
+TEST(FrontLearner, ItsDerivativesAreThoseOfTheLoss) {
+    const FrontScenes::Drawn drawn = FrontScenes(courses(), {}, 3).draw(5);
+    ASSERT_FALSE(drawn.scenes.empty());
+    FrontWeights weights = small_weights();
     FrontLearner learner;
     const auto loss_of = [&](const FrontWeights& at, FrontWeights& derivatives) {
         FrontCost cost(at);
@@ -93,13 +91,9 @@ TEST(FrontLearner, ItsDerivativesAreThoseOfTheLoss) {
 
 /// So does the loss of the judge, for each network alone; `right` is an input of the others.
 TEST(FrontJudgeLearner, ItsDerivativesAreThoseOfTheLoss) {
-    const FrontScenes scenes(courses(), {}, 3);
-    const FrontScenes::Drawn drawn = scenes.draw(5);
+    const FrontScenes::Drawn drawn = FrontScenes(courses(), {}, 3).draw(5);
     ASSERT_FALSE(drawn.scenes.empty());
-    FrontWeights weights = random_front_weights(2);
-    for_each_block(weights, [](std::span<float> block) {
-        for (float& number : block) number *= 0.3F;
-    });
+    FrontWeights weights = small_weights();
     weights.rank = weights.usable = random_front_network(kWholeLaneFeatures, 7);
     weights.right = random_front_network(kRightInputs, 8);
     FrontJudgeLossOptions options;

@@ -4,15 +4,7 @@
 
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/tracks/generated_tracks.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <ranges>
-#include <set>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -10,15 +10,8 @@
 #include "experiments/training/front_training_run.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 #include "tests/support/front_fixture.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <ranges>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -239,15 +232,10 @@ TEST(FrontTraining, FiguresOfARunCountWhereItsPathShowsTheWay) {
 }
 
 TEST(FrontTraining, OptionsOutOfRangeAreNamed) {
-    const auto key_of = [&](auto change) -> std::string {
+    const auto key_of = [&](auto change) {
         FrontTrainingOptions options = quick();
         change(options);
-        try {
-            validate(options);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+        return refused_key([&] { validate(options); });
     };
     EXPECT_EQ(key_of([](auto&) {}), "accepted");
     EXPECT_EQ(key_of([](auto& o) { o.draws_per_step = 0; }), "draws_per_step");

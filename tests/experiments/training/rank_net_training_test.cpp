@@ -8,19 +8,10 @@
 #include "experiments/training/track_variant.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc/clc_detector.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
-#include <gtest/gtest.h>
 
 namespace conelane::experiments {
 namespace {
@@ -68,6 +59,31 @@ TEST(Adam, ScalesEveryDerivativeByItsRootMeanSquare) {
     EXPECT_NEAR(cosine_rate(0.5, 1.0), 0.0, 1e-12);
 }
 
+void fill_at_random(auto& values, boost::random::mt19937_64& random) {
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+        values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
+}
+
+/// The gradient is the slope of the loss along every parameter.
+void expect_slopes(RankNetParameters& parameters, const RankNetParameters& gradient,
+                   const std::function<double()>& loss) {
+    const auto check = [&](auto& values, const auto& derivatives) {
+        constexpr double kStep = 1e-6;
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+            const double value = values(i);
+            values(i) = value + kStep;
+            const double above = loss();
+            values(i) = value - kStep;
+            const double below = loss();
+            values(i) = value;
+            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
+        }
+    };
+    check(parameters.hidden, gradient.hidden);
+    check(parameters.hidden_bias, gradient.hidden_bias);
+    check(parameters.output, gradient.output);
+}
+
 TEST(PairLoss, OfOnePairByHand) {
     // One unit that passes on the only input: scores 3 and 1.
     const RankNetParameters parameters{Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1),
@@ -82,11 +98,7 @@ TEST(PairLoss, OfOnePairByHand) {
 
 TEST(PairLoss, GradientEqualsFiniteDifferences) {
     boost::random::mt19937_64 random(4);
-    const auto fill = [&](auto& values) {
-        for (Eigen::Index i = 0; i < values.size(); ++i) {
-            values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
-        }
-    };
+    const auto fill = [&](auto& values) { fill_at_random(values, random); };
     RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
     fill(parameters.hidden);
     fill(parameters.hidden_bias);
@@ -98,21 +110,7 @@ TEST(PairLoss, GradientEqualsFiniteDifferences) {
     pairs.first_is_better = pairs.first_is_better.cwiseAbs();
     RankNetParameters gradient;
     (void)pair_loss(parameters, pairs, &gradient);
-    const auto check = [&](auto& values, const auto& derivatives) {
-        constexpr double kStep = 1e-6;
-        for (Eigen::Index i = 0; i < values.size(); ++i) {
-            const double value = values(i);
-            values(i) = value + kStep;
-            const double above = pair_loss(parameters, pairs, nullptr);
-            values(i) = value - kStep;
-            const double below = pair_loss(parameters, pairs, nullptr);
-            values(i) = value;
-            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
-        }
-    };
-    check(parameters.hidden, gradient.hidden);
-    check(parameters.hidden_bias, gradient.hidden_bias);
-    check(parameters.output, gradient.output);
+    expect_slopes(parameters, gradient, [&] { return pair_loss(parameters, pairs, nullptr); });
 }
 
 /// Random parameters and two scenes of three and four candidates with eight inputs.
@@ -122,11 +120,7 @@ struct ChoiceProblem {
 
     ChoiceProblem() {
         boost::random::mt19937_64 random(9);
-        const auto fill = [&](auto& values) {
-            for (Eigen::Index i = 0; i < values.size(); ++i) {
-                values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
-            }
-        };
+        const auto fill = [&](auto& values) { fill_at_random(values, random); };
         fill(parameters.hidden);
         fill(parameters.hidden_bias);
         fill(parameters.output);
@@ -151,21 +145,8 @@ TEST(ChoiceLoss, GradientEqualsFiniteDifferences) {
     ChoiceProblem problem;
     RankNetParameters gradient;
     (void)choice_loss(problem.parameters, problem.scenes, &gradient);
-    const auto check = [&](auto& values, const auto& derivatives) {
-        constexpr double kStep = 1e-6;
-        for (Eigen::Index i = 0; i < values.size(); ++i) {
-            const double value = values(i);
-            values(i) = value + kStep;
-            const double above = choice_loss(problem.parameters, problem.scenes, nullptr);
-            values(i) = value - kStep;
-            const double below = choice_loss(problem.parameters, problem.scenes, nullptr);
-            values(i) = value;
-            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
-        }
-    };
-    check(problem.parameters.hidden, gradient.hidden);
-    check(problem.parameters.hidden_bias, gradient.hidden_bias);
-    check(problem.parameters.output, gradient.output);
+    expect_slopes(problem.parameters, gradient,
+                  [&] { return choice_loss(problem.parameters, problem.scenes, nullptr); });
 }
 
 TEST(RankNetTraining, LearnsToChooseFromWholeScenes) {
@@ -288,15 +269,10 @@ TEST(RankingFigures, OfThreeScenesByHand) {
 }
 
 TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
-    const auto key_of = [](auto change) -> std::string {
+    const auto key_of = [](auto change) {
         RankNetTrainingOptions options = quick();
         change(options);
-        try {
-            (void)train_rank_net(lists_by_fourth_feature(2, 0), options);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+        return refused_key([&] { (void)train_rank_net(lists_by_fourth_feature(2, 0), options); });
     };
     EXPECT_EQ(key_of([](RankNetTrainingOptions&) {}), "accepted");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.inputs = 9; }), "inputs");

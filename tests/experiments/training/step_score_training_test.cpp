@@ -2,11 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "experiments/training/training_run.hpp"
-
-#include <string>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -65,15 +62,10 @@ TEST(StepScoreTraining, ABeamAsWideAsTheSceneKeepsEveryLane) {
 
 TEST(StepScoreTraining, OptionsOutOfRangeAreNamed) {
     const SceneSet set = scenes("generated:circle@1", 30.0);
-    const auto key_of = [&](auto change) -> std::string {
+    const auto key_of = [&](auto change) {
         StepScoreTrainingOptions options = quick();
         change(options);
-        try {
-            (void)train_step_scores(set, options);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+        return refused_key([&] { (void)train_step_scores(set, options); });
     };
     EXPECT_EQ(key_of([](auto&) {}), "accepted");
     EXPECT_EQ(key_of([](auto& o) { o.epochs = 0; }), "epochs");

@@ -6,13 +6,8 @@
 #include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "tests/support/program_fixture.hpp"
-
-#include <cstddef>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -65,18 +60,13 @@ TEST(DetectorTuning, FilesHoldWhatWasFound) {
 }
 
 TEST(DetectorTuning, FilesThatAreWrongAreNamed) {
-    const auto fault = [](const std::string& text) -> std::string {
-        try {
-            (void)parse_delaunay_beam_parameters(text, "p.json");
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
+    const auto fault = [](const std::string& text) {
+        return refusal<InputError>([&] { (void)parse_delaunay_beam_parameters(text, "p.json"); });
     };
     const TunableDetector& detector = find_tunable_detector("delaunay-beam");
     std::vector<double> values;
     for (const TunableParameter& parameter : detector.parameters) values.push_back(parameter.start);
-    EXPECT_EQ(fault(to_json_text(detector, values)), "");
+    EXPECT_EQ(fault(to_json_text(detector, values)), "accepted");
     EXPECT_EQ(fault("{\"w_turns\": 1," + to_json_text(detector, values).substr(1)),
               "p.json: w_turns: is not a key here; w_turn is");
     EXPECT_THAT(fault("{}"), HasSubstr("p.json: w_turn"));
@@ -88,10 +78,9 @@ TEST(DetectorTuning, FilesThatAreWrongAreNamed) {
 class TuneDetector : public ProgramFixture {};
 
 TEST_F(TuneDetector, WritesParametersAndTheirRecord) {
-    const Outcome outcome = run(
+    const Outcome outcome = run_well(
         "tune-method --method delaunay-beam --tracks generated:circle --fp 0.3 --every 60 --evaluations 3 "
         "--seed 4 --out p.json");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_THAT(outcome.output, HasSubstr("delaunay-beam on "));
     EXPECT_NO_THROW((void)parse_delaunay_beam_parameters(text_of(path("p.json")), path("p.json")));
     const std::string record = text_of(path("p.record.json"));

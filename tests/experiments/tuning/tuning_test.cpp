@@ -9,15 +9,7 @@
 #include "experiments/tuning/parameter_ranges.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "tests/support/file_test.hpp"
-
-#include <cmath>
-#include <fstream>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -9,14 +9,7 @@
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-
-#include <cmath>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -4,17 +4,8 @@
 #include "graph_search/baselines/astar_lane/path_boundaries.hpp"
 #include "graph_search/shared/search_graph.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <cmath>
-#include <cstdint>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -104,13 +95,7 @@ TEST(AstarLane, KeepsNothingOfTheSceneBefore) {
 TEST(AstarLane, RefusesParametersOutOfTheirRange) {
     AstarLaneParameters parameters;
     parameters.least_radius_m = 0.0;
-    std::string key;
-    try {
-        (void)make_astar_lane_detector(parameters);
-    } catch (const InvalidInput& error) {
-        key = error.key();
-    }
-    EXPECT_EQ(key, "least_radius_m");
+    EXPECT_EQ(refused_key([&] { (void)make_astar_lane_detector(parameters); }), "least_radius_m");
     parameters = {};
     parameters.max_steps = 0;
     EXPECT_THROW((void)make_astar_lane_detector(parameters), InvalidInput);

@@ -2,13 +2,8 @@
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -103,13 +98,7 @@ TEST(DelaunayBeam, FindsNothingButKnowsThatTheBeamWasTooNarrow) {
 TEST(DelaunayBeam, RefusesParametersOutOfTheirRange) {
     DelaunayBeamParameters parameters;
     parameters.w_turn = -1.0;
-    std::string key;
-    try {
-        (void)make_delaunay_beam_detector(parameters);
-    } catch (const InvalidInput& error) {
-        key = error.key();
-    }
-    EXPECT_EQ(key, "w_turn");
+    EXPECT_EQ(refused_key([&] { (void)make_delaunay_beam_detector(parameters); }), "w_turn");
     parameters = {};
     parameters.beam_width = 0;
     EXPECT_THROW((void)make_delaunay_beam_detector(parameters), InvalidInput);

@@ -1,18 +1,7 @@
 #include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <set>
-#include <utility>
-#include <vector>
+#include "tests/support/testing.hpp"
 
 #include <boost/polygon/voronoi.hpp>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

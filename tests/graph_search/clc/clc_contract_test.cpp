@@ -4,18 +4,7 @@
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -44,24 +33,10 @@ Scene straight(int cones_a_side) {
     return scene;
 }
 
-/// Cones anywhere in a rectangle ahead of the car and on both sides of it.
-Scene strewn(std::size_t cones, double ahead_m, double across_m, const Point& car = {0.0, 0.0}) {
-    boost::random::mt19937_64 random(7);
-    boost::random::uniform_real_distribution<> x(0.0, ahead_m);
-    boost::random::uniform_real_distribution<> y(-across_m / 2.0, across_m / 2.0);
-    Scene scene;
-    scene.pose.position = car;
-    for (std::size_t i = 0; i < cones; ++i) {
-        const double x_m = x(random);
-        scene.cones.push_back({static_cast<ConeId>(i), car + Point(x_m, y(random))});
-    }
-    return scene;
-}
-
 /// Adds `cones` cones beside a lane, at one place or, with `spread_m`, around it.
 Scene heap(std::size_t cones, double spread_m) {
     Scene scene = straight(6);
-    const Scene heaped = strewn(cones, 1.0, 1.0);
+    const Scene heaped = tests::strewn_scene(cones, 1.0, 1.0);
     for (const Cone& cone : heaped.cones) {
         scene.cones.push_back({1000 + cone.id, spread_m * cone.position + Point(9.0, 2.0)});
     }
@@ -171,7 +146,7 @@ TEST(ClcContract, AFoundLaneTellsWhetherALimitCutTheSearch) {
     EXPECT_EQ(few.stopped_by, StopReason::iterations);
     options.iteration_limit = std::numeric_limits<std::int64_t>::max();
     const LaneAnswer late =
-        make_clc_detector(options)->detect(strewn(300, 30.0, 16.0), {.time_limit_ms = 30.0});
+        make_clc_detector(options)->detect(tests::strewn_scene(300, 30.0, 16.0), {.time_limit_ms = 30.0});
     EXPECT_EQ(late.status, LaneStatus::found);
     EXPECT_EQ(late.stopped_by, StopReason::time);
 }
@@ -203,7 +178,7 @@ TEST(ClcContract, AnAnswerDependsOnTheSceneAlone) {
             SCOPED_TRACE(seed);
             const Scene scene = tests::random_scene(seed, 8 + 2 * seed);
             // Earlier calls: a search that reached its time limit, an error, a scene of another size.
-            (void)used->detect(strewn(200 + 10 * seed, 30.0, 16.0), {.time_limit_ms = 1.0});
+            (void)used->detect(tests::strewn_scene(200 + 10 * seed, 30.0, 16.0), {.time_limit_ms = 1.0});
             Scene broken = scene;
             broken.cones.front().position.x() = kNaN;
             (void)used->detect(broken, tests::kNoTimeLimit);
@@ -220,15 +195,16 @@ struct Crowd {
 };
 
 std::vector<Crowd> crowds() {
-    return {{"800 in 50 m x 50 m", strewn(800, 50.0, 50.0)},
-            {"2000 in 50 m x 50 m", strewn(2000, 50.0, 50.0)},
-            {"5000 in 50 m x 50 m", strewn(5000, 50.0, 50.0)},
-            {"5000 in 10 m x 10 m", strewn(5000, 10.0, 10.0)},
-            {"5000 at one place beside a lane", heap(5000, 0.0)},
-            {"5000 nearly at one place beside a lane", heap(5000, 1e-3)},
-            {"2000 in 50 m x 50 m, 1e6 m from the origin", strewn(2000, 50.0, 50.0, {1e6, -1e6})},
-            {"500 in a strip", strewn(500, 300.0, 7.0)},
-            {"5000 over 1e6 m", strewn(5000, 1e6, 1e6)}};
+    return {
+        {"800 in 50 m x 50 m", tests::strewn_scene(800, 50.0, 50.0)},
+        {"2000 in 50 m x 50 m", tests::strewn_scene(2000, 50.0, 50.0)},
+        {"5000 in 50 m x 50 m", tests::strewn_scene(5000, 50.0, 50.0)},
+        {"5000 in 10 m x 10 m", tests::strewn_scene(5000, 10.0, 10.0)},
+        {"5000 at one place beside a lane", heap(5000, 0.0)},
+        {"5000 nearly at one place beside a lane", heap(5000, 1e-3)},
+        {"2000 in 50 m x 50 m, 1e6 m from the origin", tests::strewn_scene(2000, 50.0, 50.0, 7, {1e6, -1e6})},
+        {"500 in a strip", tests::strewn_scene(500, 300.0, 7.0)},
+        {"5000 over 1e6 m", tests::strewn_scene(5000, 1e6, 1e6)}};
 }
 
 TEST(ClcContract, TheTimeLimitHoldsInEveryPart) {
@@ -258,7 +234,8 @@ TEST(ClcContract, TheMemoryLimitHoldsInGraphAndSearch) {
         const LaneAnswer crowded = detector->detect(heap(2000, 12.0), tests::kNoTimeLimit);
         EXPECT_EQ(crowded.status, LaneStatus::stopped) << "the graph alone is larger";
         EXPECT_EQ(crowded.stopped_by, StopReason::memory);
-        const LaneAnswer endless = detector->detect(strewn(120, 30.0, 16.0), tests::kNoTimeLimit);
+        const LaneAnswer endless =
+            detector->detect(tests::strewn_scene(120, 30.0, 16.0), tests::kNoTimeLimit);
         EXPECT_EQ(endless.status, LaneStatus::found);
         EXPECT_EQ(endless.stopped_by, StopReason::memory);
     }

@@ -5,23 +5,12 @@
 #include "graph_search/clc/start_vertices.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
 #include "tests/support/no_time_limit.hpp"
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <memory>
-#include <set>
-#include <span>
-#include <string_view>
 #include <unordered_map>
-#include <utility>
-#include <vector>
 
-#include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -410,15 +399,10 @@ TEST(ClcDetector, WhatWasFoundInTimeIsAnAnswer) {
 }
 
 TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
-    const auto key_of = [](auto change) -> std::string {
+    const auto key_of = [](auto change) {
         ClcOptions options;
         change(options);
-        try {
-            (void)make_clc_detector(options);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+        return refused_key([&] { (void)make_clc_detector(options); });
     };
     EXPECT_EQ(key_of([](ClcOptions&) {}), "accepted");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.iteration_limit = 0; }), "iteration_limit");

@@ -4,21 +4,8 @@
 #include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "tests/support/cones_at.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -158,14 +145,7 @@ TEST(StepScores, DerivativesEqualFiniteDifferences) {
 }
 
 TEST(StepScores, ErrorsNameTheirEntry) {
-    const auto key_of = [](const StepScores& scores) -> std::string {
-        try {
-            validate(scores);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
-    };
+    const auto key_of = [](const StepScores& scores) { return refused_key([&] { validate(scores); }); };
     StepScores scores = zero_scores();
     EXPECT_EQ(key_of(scores), "accepted");
     scores.values[3] = std::numeric_limits<double>::infinity();

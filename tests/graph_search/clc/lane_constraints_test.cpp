@@ -3,15 +3,9 @@
 #include "graph_search/clc/lane_closing.hpp"
 #include "graph_search/clc/next_vertex.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
+#include "tests/support/testing.hpp"
 
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_01.hpp>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

@@ -1,15 +1,10 @@
 #include "graph_search/clc/lane_width.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
-#include <vector>
+#include "tests/support/testing.hpp"
 
-#include <boost/random/mersenne_twister.hpp>
+#include <numeric>
+
 #include <boost/random/uniform_01.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

@@ -2,14 +2,7 @@
 
 #include "graph_search/clc/neighbourhood.hpp"
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -4,19 +4,8 @@
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
 #include "tests/support/no_time_limit.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <span>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -252,15 +241,10 @@ TEST(RankNet, IsTheSameForAnyNumberOfUnitsAndLanes) {
 }
 
 TEST(RankNet, RejectsWeightsThatDoNotFitByName) {
-    const auto key_of = [](auto change) -> std::string {
+    const auto key_of = [](auto change) {
         RankNetWeights weights = only_input(0);
         change(weights);
-        try {
-            (void)make_rank_net(weights);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+        return refused_key([&] { (void)make_rank_net(weights); });
     };
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(key_of([](RankNetWeights&) {}), "accepted");

@@ -2,17 +2,7 @@
 
 #include "graph_search/clc/left_right.hpp"
 #include "graph_search/clc/next_vertex.hpp"
-
-#include <algorithm>
-#include <numbers>
-#include <span>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

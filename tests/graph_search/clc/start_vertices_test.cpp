@@ -1,12 +1,7 @@
 #include "graph_search/clc/start_vertices.hpp"
 
 #include "tests/support/cones_at.hpp"
-
-#include <cmath>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

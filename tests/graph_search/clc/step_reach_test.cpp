@@ -1,12 +1,7 @@
 #include "graph_search/clc/step_reach.hpp"
 
 #include "graph_search/clc/next_vertex.hpp"
-
-#include <limits>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

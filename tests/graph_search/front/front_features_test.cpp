@@ -6,18 +6,7 @@
 #include "graph_search/front/front_cost.hpp"
 #include "graph_search/front/front_judge_features.hpp"
 #include "tests/support/front_fixture.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -2,10 +2,7 @@
 
 #include "graph_search/front/front_moves.hpp"
 
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -7,21 +7,8 @@
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <numbers>
-#include <set>
-#include <utility>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/refusal.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -584,12 +571,7 @@ TEST(FrontDetector, OptionsOutOfRangeAreNamed) {
     const auto key_of = [](auto change) -> std::string {
         FrontOptions options{FrontWeights::zero(), {}};
         change(options);
-        try {
-            (void)make_front_detector(options);
-        } catch (const InvalidInput& error) {
-            return error.key();
-        }
-        return "accepted";
+        return refused_key([&] { (void)make_front_detector(options); });
     };
     EXPECT_EQ(key_of([](auto&) {}), "accepted");
     EXPECT_EQ(key_of([](auto& o) { o.search.beam_width = 0; }), "beam_width");

@@ -2,9 +2,7 @@
 
 #include "solvers/milp/detail/invented_point.hpp"
 
-#include <array>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::detail {
 namespace {

@@ -9,13 +9,7 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {

@@ -17,22 +17,10 @@
 #include "solvers/path_pair/primal/pair_completion.hpp"
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <optional>
-#include <set>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {
@@ -243,11 +231,14 @@ TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
 ///                   car >
 ///                     5 ----- 6 ---- 7
 TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
-    Scene scene;
-    for (const Point& place : {Point(0.0, 1.75), Point(3.2, 1.75), Point(6.4, 1.75), Point(-3.2, 1.75),
-                               Point(-6.4, 1.75), Point(0.0, -1.75), Point(3.2, -1.75), Point(6.0, -1.75)}) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
-    }
+    Scene scene = tests::cones_at({{0.0, 1.75},
+                                   {3.2, 1.75},
+                                   {6.4, 1.75},
+                                   {-3.2, 1.75},
+                                   {-6.4, 1.75},
+                                   {0.0, -1.75},
+                                   {3.2, -1.75},
+                                   {6.0, -1.75}});
     RldParameters parameters;
     parameters.d_max = 16.0;
     Frontiers s(make_problem(scene, parameters), 1);

@@ -7,12 +7,7 @@
 #include "solvers/path_pair/search/node_queue.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
-
-#include <memory>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {

@@ -7,20 +7,10 @@
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <numbers>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {
@@ -266,10 +256,7 @@ TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
     RldParameters parameters;
     parameters.theta_t = 2.0;
     parameters.t_crit = 100.0;
-    Scene scene;
-    for (const Point& p : {Point(4, 0), Point(7.2, 0), Point(7.2, 3.2), Point(4, 3.2)}) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), p});
-    }
+    Scene scene = tests::cones_at({{4, 0}, {7.2, 0}, {7.2, 3.2}, {4, 3.2}});
     ArcGraph graph;
     SearchClock clock;
     graph.build(make_problem(scene, parameters), clock);

@@ -14,19 +14,7 @@
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {
@@ -214,21 +202,6 @@ TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
     EXPECT_GT(with_others, 100);
 }
 
-/// Cones at random ahead of the car, with a mean spacing of three metres: many walks, but no lane.
-Scene strewn_scene(std::uint64_t seed, std::size_t cones, double side) {
-    boost::random::mt19937_64 random(seed);
-    const auto uniform = [&](double low, double high) {
-        return boost::random::uniform_real_distribution<double>(low, high)(random);
-    };
-    Scene scene;
-    scene.id = "strewn_" + std::to_string(seed);
-    for (std::size_t i = 0; i < cones; ++i) {
-        const double x = uniform(0.0, side);
-        scene.cones.push_back({static_cast<ConeId>(i), Point(x, uniform(-0.5 * side, 0.5 * side))});
-    }
-    return scene;
-}
-
 struct Stopped {
     double cost = 0.0;
     BranchAndBound::Outcome outcome{};
@@ -264,7 +237,7 @@ TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
     double without = 0.0;
     int stopped = 0;
     for (std::uint64_t seed = 0; seed < 4; ++seed) {
-        const Scene scene = strewn_scene(seed, 70, 25.0);
+        const Scene scene = tests::strewn_scene(70, 25.0, 25.0, seed);
         double before = 0.0;
         for (const int looks : {50, 200, 800, 2000}) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << looks << " looks");
@@ -297,7 +270,7 @@ TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
     for (const auto& [seed, d_near_m] : {Drawn{2, 8.0}, Drawn{3, 8.0}, Drawn{7, 5.0}}) {
         for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", pairing " << static_cast<int>(pairing));
-            const Scene scene = strewn_scene(seed, 70, 25.0);
+            const Scene scene = tests::strewn_scene(70, 25.0, 25.0, seed);
             RldParameters parameters;
             parameters.pairing = pairing;
             parameters.d_near = d_near_m;

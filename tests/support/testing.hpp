@@ -1,0 +1,44 @@
+/// What nearly every test file includes. It is precompiled once for all of them (tests/CMakeLists.txt).
+#pragma once
+
+#include "tests/support/printers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <ranges>
+#include <set>
+#include <span>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+
+/// The name of a case of a parameterised test: a name may hold letters, digits and underscores.
+inline std::string case_name(std::string_view words) {
+    std::string name(words);
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
+}  // namespace conelane
