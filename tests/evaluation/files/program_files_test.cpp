@@ -243,6 +243,7 @@ TEST(SolutionFiles, FaultsOfAPointNameColumnOrRow) {
     EXPECT_EQ(fault("y_1 3\n"), "column y_1 is 3, outside 0 to 1");
     EXPECT_EQ(fault("z_1_2 0.8\n"), "column z_1_2 is 0.8, outside 0 to 0.75");
     EXPECT_EQ(fault("y_1 1\n"), "row close_0 of the program is 1, outside 0 to 0.5");
+    EXPECT_EQ(fault("z_1_2 0.5\n"), "row close_0 of the program is -0.5, outside 0 to 0.5");
     EXPECT_EQ(fault("x 1\ny_1 1\nz_1_2 0.5\n"), "row one_of of the program is 2, outside -1e+300 to 1");
     EXPECT_EQ(fault("=obj= -2.001\ny_1 1\nz_1_2 0.5\n"), "it claims the objective -2.001, its point has -2");
     EXPECT_EQ(fault(optimum + "=bound= -1.9\n"), "it claims the bound -1.9, its point has the objective -2");
