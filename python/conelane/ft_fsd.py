@@ -75,7 +75,8 @@ IntArray = NDArray[np.int64]
 _Pose = Tuple[float, float, float]
 _ORIGIN: _Pose = (0.0, 0.0, 0.0)
 # Drives that may explain how cones moved from call to call.
-_WAY_M, _TURN_RAD = (grid.reshape(-1, 1) for grid in np.meshgrid(np.arange(0.3, 3.0, 0.15), np.arange(-0.4, 0.41, 0.02)))
+_WAY_M, _TURN_RAD = (drives.reshape(-1, 1)
+                     for drives in np.meshgrid(np.arange(0.3, 3.0, 0.15), np.arange(-0.4, 0.41, 0.02)))
 _Seen = Dict[int, Tuple[FloatArray, IntArray]]  # by id: the last place of a cone, and its sightings by colour
 Intermediate = Tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, IntArray, IntArray]
 
@@ -139,7 +140,8 @@ def _way_m(a: _Pose, b: _Pose) -> float:
 
 def _has_driven(before: FloatArray, pose_before: _Pose, now: FloatArray, pose_now: _Pose) -> bool:
     """Whether cones lie as seen before and after a drive of 0.3 to 3 m, and hardly any where it was."""
-    before, now = _nearest_cones(before, pose_before, 3 * _COMPARED_CONES), _nearest_cones(now, pose_now, _COMPARED_CONES)
+    before = _nearest_cones(before, pose_before, 3 * _COMPARED_CONES)
+    now = _nearest_cones(now, pose_now, _COMPARED_CONES)
     count = min(len(before), len(now))
     if count < 4:
         return False
@@ -402,12 +404,12 @@ class PathPlanner:
         check = self._frame_check
         check.observe(places, pose)
         if check.has_moved and (self._given_frame == "car" or (check.is_sure and not check.is_cars)):
-            raise ValueError("vehicle_position: moves, and so do the cones with the car: give the cones of the car's frame "
-                             "with a place that stays, or cones and place in a map")
+            raise ValueError("vehicle_position: moves, though the cones are in the car's frame: give a place that stays "
+                             "with them, or give both in a map")
         if self.mission in _MISSIONS_OF_A_MAP:
             if self._given_frame == "car" or (check.is_cars and check.is_sure and not check.has_moved):
-                raise ValueError(f"mission {self.mission.name}: the cones are in the car's frame, and only in a map is it "
-                                 "known where the car has to stop: give cones and pose in a map")
+                raise ValueError(f"mission {self.mission.name}: the cones are in the car's frame, and only a map says "
+                                 "where the car has to stop: give cones and pose in a map")
             return "map"
         return "car" if check.is_cars or self._given_frame == "car" else "map"
 

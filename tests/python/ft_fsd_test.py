@@ -177,7 +177,8 @@ class Interface(unittest.TestCase):
 
     def test_what_the_original_has_and_conelane_has_not_is_refused_aloud(self):
         planner = PathPlanner(MissionTypes.trackdrive)
-        for name in ("cone_sorting", "cone_matching", "pathing", "config", "global_path", "set_global_path", "relocalizer"):
+        for name in ("cone_sorting", "cone_matching", "pathing", "config", "global_path", "set_global_path",
+                     "relocalizer"):
             with self.assertRaisesRegex(AttributeError, name):
                 getattr(planner, name)
             with self.assertRaisesRegex(AttributeError, name):
