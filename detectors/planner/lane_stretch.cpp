@@ -21,6 +21,8 @@ constexpr double kMaxJoin_m = 12.0;
 /// A lane that begins ahead is joined in one bend if it is no farther aside than kBesideCar_m plus this share
 /// of the distance ahead.
 constexpr double kAsideShare = 0.3;
+constexpr double kMinBend_m = 3.0;     ///< radius of a bend that leads to a lane that begins farther aside
+constexpr double kMaxBend_rad = 2.4;   ///< and its turn
 constexpr double kJoinOffset_m = 1.2;  ///< of the lane's beginning from the lane that leads to it
 constexpr double kJoinTurn_rad = 0.8;
 constexpr double kJoinBend_m = 2.0;  ///< before its beginning the line turns from one lane to the other
@@ -124,6 +126,16 @@ void follow(const DrivableLane& lane, const DrivableLane& other, double window_m
     }
 }
 
+/// Whether straight on, one bend and straight on again lead from the car to the beginning of a lane. In a
+/// hairpin the inner cones beside the car may be out of view, so that the lane begins behind the bend.
+bool lies_behind_bend(const Pose& pose, const DrivablePoint& first) {
+    const double bend_rad = turn_rad(pose.yaw_rad, first.heading_rad);
+    const double behind_m = pose.left_m(first.position) / std::sin(bend_rad);  // the corner of the two axes
+    const double before_m = pose.ahead_m(first.position) - behind_m * std::cos(bend_rad);
+    return std::abs(bend_rad) <= kMaxBend_rad &&
+           std::min(behind_m, before_m) >= kMinBend_m * std::tan(std::abs(bend_rad) / 2.0);
+}
+
 }  // namespace
 
 std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m, double to_s_m) {
@@ -223,7 +235,8 @@ std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& p
     }
     if (points.empty()) {
         const double to_it_m = std::max(0.0, pose.ahead_m(first.position));
-        if (std::abs(pose.left_m(first.position)) > kBesideCar_m + kAsideShare * to_it_m) return std::nullopt;
+        const bool is_aside = std::abs(pose.left_m(first.position)) > kBesideCar_m + kAsideShare * to_it_m;
+        if (is_aside && !lies_behind_bend(pose, first)) return std::nullopt;
         DrivablePoint start = first;
         start.position = pose.position;
         start.heading_rad = pose.yaw_rad;

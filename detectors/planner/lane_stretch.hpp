@@ -34,7 +34,7 @@ struct LaneFoot {
 
 /// The lane extended back to the car if it begins ahead: along `before`, the lane driven so far, if that
 /// leads to it, else in one bend from the car. Nothing if it is more than 12 m away, or, for a bend, too far
-/// aside: more than 2.5 m and three tenths of the distance ahead.
+/// aside: more than 2.5 m and three tenths of the distance ahead, if it does not turn to that side.
 [[nodiscard]] std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,
                                                        const DrivableLane* before, double step_m);
 

@@ -9,7 +9,7 @@ needs only `from conelane.ft_fsd import ...` instead. The differences are listed
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, NoReturn, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,15 +54,30 @@ _MISSION_OF = {
     MissionTypes.skidpad: "skidpad",
     MissionTypes.autocross: "autocross",
 }  # all others drive laps
+_MISSIONS_OF_A_MAP = (MissionTypes.acceleration, MissionTypes.skidpad)
 _WITHOUT_END = 1_000_000_000  # laps of a mission that is not a dynamic event
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
 _GUESSED_M = 5.0  # of a lane that is a guess
 _SHORT_OF_A_WALL = 2  # points of the centre line, 0.5 m each
+_SHORTEST_M = 3.0  # of a path: colours end it no earlier
+_CONTRADICTION = 3  # cones of the other side's colour more than of the own
+_SAME_PLACE_M = 0.1  # of a car that has not moved
+_LONGEST_WAY_M = 2.0  # of a car between calls that are compared
+_MOVED_M = 0.3  # cones that have moved, beyond noise
+_COMPARED_CONES = 12  # the nearest ones
+_FIT = 0.5  # share of the distances, if the cones moved
+_SURE_CALLS = 5  # whose cones have moved
 _MOST_CONES = 5000  # whose places are kept
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+_Pose = Tuple[float, float, float]
+_ORIGIN: _Pose = (0.0, 0.0, 0.0)
+# Drives that may explain how cones moved from call to call.
+_WAY_M, _TURN_RAD = (drives.reshape(-1, 1)
+                     for drives in np.meshgrid(np.arange(0.3, 3.0, 0.15), np.arange(-0.4, 0.41, 0.02)))
+_Seen = Dict[int, Tuple[FloatArray, IntArray]]  # by id: the last place of a cone, and its sightings by colour
 Intermediate = Tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, IntArray, IntArray]
 
 
@@ -90,6 +105,80 @@ class _ConeMemory:
         return ids
 
 
+class _FrameCheck:
+    """Tells from what moves from call to call in which frame the cones are given."""
+
+    def __init__(self) -> None:
+        self._first: Optional[Tuple[FloatArray, _Pose]] = None  # since the car has its place
+        self._last: Optional[Tuple[FloatArray, _Pose]] = None
+        self._drives = 0  # successive calls in which the cones moved
+        self.is_cars = False  # the cones move as seen from a car that drives, and its place stays
+        self.has_moved = False  # the place, in any call
+
+    @property
+    def is_sure(self) -> bool:
+        return self._drives >= _SURE_CALLS
+
+    def observe(self, cones: FloatArray, pose: _Pose) -> None:
+        now = cones, pose
+        last, self._last = self._last, now
+        if self._first is None or last is None:
+            self._first = now
+        elif _way_m(self._first[1], pose) > _SAME_PLACE_M:
+            # Cones that move with the car look as from a place that stays.
+            moved = _way_m(last[1], pose) < _LONGEST_WAY_M and _has_driven(last[0], _ORIGIN, cones, _ORIGIN)
+            self._drives = self._drives + 1 if moved else 0
+            self._first, self.is_cars, self.has_moved = now, False, True
+        elif not (self.is_sure and self.is_cars):
+            self._drives = self._drives + 1 if _has_driven(*last, *now) else 0
+            self.is_cars = self.is_cars or self._drives > 0 or _has_driven(*self._first, *now)
+
+
+def _way_m(a: _Pose, b: _Pose) -> float:
+    return float(np.hypot(b[0] - a[0], b[1] - a[1]))
+
+
+def _has_driven(before: FloatArray, pose_before: _Pose, now: FloatArray, pose_now: _Pose) -> bool:
+    """Whether cones lie as seen before and after a drive of 0.3 to 3 m, and hardly any where it was."""
+    before = _nearest_cones(before, pose_before, 3 * _COMPARED_CONES)
+    now = _nearest_cones(now, pose_now, _COMPARED_CONES)
+    count = min(len(before), len(now))
+    if count < 4:
+        return False
+    stood_m = float(_nearest_m(now, before[None], count // 5)[0])
+    if stood_m < _MOVED_M:
+        return False
+    before, now = _from_car(before, pose_before), _from_car(now, pose_now)
+    x, y = before[:, 0] - _WAY_M * np.cos(_TURN_RAD / 2.0), before[:, 1] - _WAY_M * np.sin(_TURN_RAD / 2.0)
+    cos, sin = np.cos(_TURN_RAD), np.sin(_TURN_RAD)
+    driven_m = _nearest_m(now, np.stack([x * cos + y * sin, y * cos - x * sin], axis=-1), 2 * count // 5)
+    return bool(driven_m.min() < _FIT * stood_m)
+
+
+def _nearest_cones(cones: FloatArray, pose: _Pose, count: int) -> FloatArray:
+    return cones[np.linalg.norm(cones - pose[:2], axis=1).argsort()[:count]]
+
+
+def _from_car(places: FloatArray, pose: _Pose) -> FloatArray:
+    cos, sin = np.cos(pose[2]), np.sin(pose[2])
+    return (places - pose[:2]) @ np.array([[cos, -sin], [sin, cos]])
+
+
+def _nearest_m(places: FloatArray, sets: FloatArray, rank: int) -> FloatArray:
+    """Distance of places to the nearest ones of each set: the one with this rank."""
+    distance = np.linalg.norm(places[:, None] - sets[:, None], axis=-1).min(axis=-1)
+    return np.partition(distance, rank, axis=1)[:, rank]
+
+
+def _absent(names: str, instead: str) -> property:
+    """Attributes of the original that have no meaning here: to read or to set one is an error."""
+
+    def refuse(*_: Any) -> NoReturn:
+        raise AttributeError(f"PathPlanner has no {names}: {instead}")
+
+    return property(refuse, refuse)
+
+
 class PathPlanner:
     """Path from cones, call by call, with the interface of ft-fsd-path-planning: a thin wrapper around `conelane.Planner`.
 
@@ -113,6 +202,9 @@ class PathPlanner:
         Number of successive calls without a lane for which the last path is still returned; 0 for none.
     interval_s : float
         Time between calls that give no `time_s` [s].
+    frame : {"map", "car"}, optional
+        In which frame cones and pose are given. By default recognised: in the car's frame, the cones move as the car
+        drives while `vehicle_position` stays. Calls in the car's frame are answered each by itself.
 
     Attributes
     ----------
@@ -121,28 +213,43 @@ class PathPlanner:
         where there was no path.
     plan : Plan or None
         Of the last call: its state, `stop`, `lap`, `phase` and how far it is safe.
+    frame : str
+        "map" or "car": how the last call was answered.
+    mission : MissionTypes
+    relocalization_info : None
+        As of the original in missions of laps. In acceleration and skidpad an `AttributeError`.
 
     Raises
     ------
     ValueError
-        For an unknown detector, for `laps` of a mission that has none, and for values out of range.
+        For an unknown detector or frame, for `laps` of a mission that has none, and for values out of range.
 
     Notes
     -----
     What differs from ft-fsd-path-planning:
 
     - **No path is an array of no rows**, shape (0, 4): where no lane was found yet, or none for more than
-      `max_path_age` calls, or where nothing of the last path lies ahead of the car. A controller brakes then.
+      `max_path_age` calls, or where nothing of the last path lies ahead of the car. A controller brakes then. As long
+      as the plan has a path, there are rows.
     - A path of an earlier call is flagged by `path_age`. It is what is left of it: it begins beside the car, and goes no
       farther than it did.
     - `plan.stop` says that the last line is crossed. The path ends where the car has to be at rest.
     - The path begins at the car's foot point on the centre line, and at the car itself only where the lane begins
       ahead of it.
     - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
-      where no cone is. The path ends too where a cone of a side has the colour of the other one, and before it crosses
-      the line between two cones of a side that have the colour of that side.
+      where no cone is. The path ends too where colours contradict the lane, at 3 m at least: where three cones of a side
+      more have the colour of the other one than its own, two at the end of the side, and before it crosses the line
+      between two cones of a side that have the colour of that side. One contradicting cone is a miscoloured one.
     - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones. In acceleration and
-      skidpad the path is that of the rules, laid onto the cones, and the sorted arrays are empty.
+      skidpad the path is that of the rules, laid onto the cones, and the sorted arrays are empty. `ebs_test` is driven
+      as laps.
+    - In a map calls have a memory: one planner serves one run, call by call. In the car's frame there is none: no laps
+      are counted, nothing says stop, and a call without a lane has no path. Acceleration and skidpad need a map; in the
+      car's frame they are refused by a `ValueError`, and so is a place that moves together with cones of the car's
+      frame.
+    - `cone_sorting`, `cone_matching`, `pathing`, `config`, `relocalizer`, `global_path` and `set_global_path` are
+      refused by an `AttributeError`. `mission` cannot be assigned. There is no `RelocalizationInformation`.
+    - Invalid input is a `ValueError`, and the planner is then as it was before.
 
     Examples
     --------
@@ -171,29 +278,51 @@ class PathPlanner:
         time_limit_ms: float = 50.0,
         max_path_age: int = 5,
         interval_s: float = 0.1,
+        frame: Optional[str] = None,
     ) -> None:
+        if frame not in (None, "map", "car"):
+            raise ValueError(f"frame: is '{frame}', not 'map', 'car' or None")
         if not path_length_m > 0.0 or points < 2 or not interval_s > 0.0:
             raise ValueError("path_length_m and interval_s must be above 0, points at least 2")
         if max_path_age < 0:
             raise ValueError("max_path_age: must not be below 0")
-        self.mission = MissionTypes(mission)
+        self._mission = MissionTypes(mission)
+        self._given_frame = frame
         if self.mission not in (*_MISSION_OF, MissionTypes.trackdrive):
             laps = _WITHOUT_END if laps is None else laps
         # Half a call more: sums of intervals are not exact.
         self._planner = Planner(_MISSION_OF.get(self.mission, "trackdrive"), detector, laps,
                                 max_age_s=(max_path_age + 0.5) * interval_s if max_path_age else 0.0)
+        self._without_memory = Planner("trackdrive", detector)
+        self._frame_check = _FrameCheck()
         self._length_m = path_length_m
         self._points = points
         self._time_limit_ms = time_limit_ms
         self._interval_s = interval_s
         self._time_s: Optional[float] = None
         self._memory = _ConeMemory()
-        self._seen: Dict[int, Tuple[FloatArray, int]] = {}  # by id: place and colour, those seen last at the end
+        self._seen: _Seen = {}  # those seen last at the end
         self._calls = 0  # since the lane was found
-        self._has_contradiction = False  # colours say that it is no lane
-        self._end: Optional[FloatArray] = None  # where colours say that it ends
+        self._end: Optional[FloatArray] = None  # where colours say that the lane ends
+        self.frame = frame or "map"
         self.path_age: Optional[int] = None
         self.plan: Optional[Plan] = None
+
+    cone_sorting = cone_matching = pathing = config = _absent(
+        "cone_sorting, cone_matching, pathing, config", "choose its detector, path_length_m and points")
+    global_path = set_global_path = _absent(
+        "global_path, set_global_path", "its path is that of the cones, and after a lap it knows the course")
+    relocalizer = _absent("relocalizer", "it lays the known course onto the cones of the map by itself")
+
+    @property
+    def mission(self) -> MissionTypes:
+        return self._mission
+
+    @property
+    def relocalization_info(self) -> None:
+        if self.mission in _MISSIONS_OF_A_MAP:
+            raise AttributeError(f"PathPlanner has no relocalization_info in {self.mission.name}: its paths are in the "
+                                 "frame of the cones")
 
     def calculate_path_in_global_frame(
         self,
@@ -234,7 +363,8 @@ class PathPlanner:
         Raises
         ------
         ValueError
-            For wrong shapes and for numbers that are not finite; the planner is then as it was before.
+            For wrong shapes and for numbers that are not finite; the planner is then as it was before. For cones in the
+            car's frame where only a map will do.
         """
         places, colors = _merge(cones)
         pose = _pose(vehicle_position, vehicle_direction)
@@ -244,16 +374,21 @@ class PathPlanner:
             time_s = 0.0 if self._time_s is None else self._time_s + self._interval_s
         if not np.isfinite(time_s):
             raise ValueError("time_s: must be a finite number")
-        ids = self._memory.ids_of(places)
-        self._remember(ids, places, colors)
-        self.plan = self._planner.update(places, pose, time_s, ids=ids, colors=colors,
-                                         time_limit_ms=self._time_limit_ms)
+        self.frame = self._frame_of(places, pose)
+        planner, memory, seen = self._planner, self._memory, self._seen
+        if self.frame == "car":  # each call by itself
+            planner, memory, seen = self._without_memory, _ConeMemory(), {}
+            planner.reset()
+        ids = memory.ids_of(places)
+        _remember(seen, ids, places, colors)
+        self.plan = planner.update(places, pose, time_s, ids=ids, colors=colors, time_limit_ms=self._time_limit_ms)
         self._time_s = time_s if self._time_s is None else max(time_s, self._time_s)
         is_fresh = self.plan.state in ("following", "finished") and self.plan.age_s == 0.0
         left = right = np.zeros((0, 2))
         if is_fresh:
-            left = self._boundary(self.plan.answer.left_ids, Color.blue, Color.yellow, True)
-            right = self._boundary(self.plan.answer.right_ids, Color.yellow, Color.blue, False)
+            self._end = None
+            left = self._boundary(self.plan.answer.left_ids, seen, Color.blue, Color.yellow)
+            right = self._boundary(self.plan.answer.right_ids, seen, Color.yellow, Color.blue)
             self._cut_guess()
         path = self._path()
         self._calls = 0 if is_fresh else self._calls + 1
@@ -262,31 +397,39 @@ class PathPlanner:
             return path
         return path, left, right, left.copy(), right.copy(), _nearest(left, right), _nearest(right, left)
 
-    def _remember(self, ids: IntArray, places: FloatArray, colors: IntArray) -> None:
-        for cone, place, color in zip(ids.tolist(), places, colors.tolist()):
-            self._seen.pop(cone, None)
-            self._seen[cone] = (place, color)
-        while len(self._seen) > _MOST_CONES:
-            del self._seen[next(iter(self._seen))]
+    def _frame_of(self, places: FloatArray, pose: _Pose) -> str:
+        """Of this call's cones: "map", or "car", where memory is of no use. Refuses what makes no sense."""
+        if self._given_frame == "map":
+            return "map"
+        check = self._frame_check
+        check.observe(places, pose)
+        if check.has_moved and (self._given_frame == "car" or (check.is_sure and not check.is_cars)):
+            raise ValueError("vehicle_position: moves, though the cones are in the car's frame: give a place that stays "
+                             "with them, or give both in a map")
+        if self.mission in _MISSIONS_OF_A_MAP:
+            if self._given_frame == "car" or (check.is_cars and check.is_sure and not check.has_moved):
+                raise ValueError(f"mission {self.mission.name}: the cones are in the car's frame, and only a map says "
+                                 "where the car has to stop: give cones and pose in a map")
+            return "map"
+        return "car" if check.is_cars or self._given_frame == "car" else "map"
 
-    def _boundary(self, ids: IntArray, own: Color, other: Color, is_first: bool) -> FloatArray:
-        """Places of a boundary. Notes where it contradicts the lane by a cone of the other side's colour: there is no
-        lane where that is the first or the second cone, and else it ends beside the last cone before. Notes too where
-        the lane that is driven, which may be another one, crosses the line between two cones of the own colour."""
-        known = [self._seen[cone] for cone in ids.tolist() if cone in self._seen]
+    def _boundary(self, ids: IntArray, seen: _Seen, own: Color, other: Color) -> FloatArray:
+        """Places of a boundary. Notes where its colours contradict the lane: the lane ends beside the last cone before.
+        Notes too where the lane that is driven, which may be another one, crosses the line between two cones of the
+        own colour."""
+        known = [seen[cone] for cone in ids.tolist() if cone in seen]
         places = np.array([place for place, _ in known]).reshape(-1, 2)
-        if is_first:
-            self._has_contradiction, self._end = False, None
-        wrong = [i for i, (_, color) in enumerate(known) if color == other]
-        if wrong and wrong[0] < 2:
-            self._has_contradiction = True
-        elif wrong:
-            line, last = self.plan.centre_line[:, 1:3], places[wrong[0] - 1]
-            self._end_at(line[_along(line, last)] if len(line) else last)
-        walls = [i for i in range(len(known) - 1) if known[i][1] == own and known[i + 1][1] == own]
-        crossing = _first_crossing(self.plan.centre_line[:, 1:3], places, walls)
+        colors = _most_seen(np.array([sightings for _, sightings in known]).reshape(-1, len(Color)))
+        line = self.plan.centre_line[:, 1:3]
+        if not len(line):
+            return places
+        wrong = _first_contradiction((colors == other).astype(int) - (colors == own))
+        if wrong is not None:
+            self._end_at(line[_along(line, places[wrong - 1]) if wrong else 0])
+        is_own = colors == own
+        crossing = _first_crossing(line, places, np.flatnonzero(is_own[:-1] & is_own[1:]))
         if crossing is not None:
-            self._end_at(self.plan.centre_line[max(0, crossing - _SHORT_OF_A_WALL), 1:3])
+            self._end_at(line[max(0, crossing - _SHORT_OF_A_WALL)])
         return places
 
     def _end_at(self, end: FloatArray) -> None:
@@ -304,13 +447,11 @@ class PathPlanner:
 
     def _path(self) -> FloatArray:
         line = self.plan.centre_line
-        if self._has_contradiction or len(line) < 2:
+        if len(line) < 2:
             return np.zeros((0, 4))
         length = min(self._length_m, line[-1, 0])
         if self._end is not None:
-            length = min(length, line[_along(line[:, 1:3], self._end), 0])
-            if not length > 0.0:
-                return np.zeros((0, 4))
+            length = min(length, max(_SHORTEST_M, line[_along(line[:, 1:3], self._end), 0]))
         s = np.linspace(0.0, length, self._points)
         return np.column_stack([s] + [np.interp(s, line[:, 0], line[:, column]) for column in (1, 2, 4)])
 
@@ -341,6 +482,36 @@ def _pose(position: FloatArray, direction: Union[FloatArray, float]) -> Tuple[fl
     if along.shape != (2,) or not along.any():
         raise ValueError("vehicle_direction: is neither an angle nor two numbers of which one is not 0")
     return float(place[0]), float(place[1]), float(np.arctan2(along[1], along[0]))
+
+
+def _remember(seen: _Seen, ids: IntArray, places: FloatArray, colors: IntArray) -> None:
+    for cone, place, color in zip(ids.tolist(), places, colors):
+        _, sightings = seen.pop(cone, (place, np.zeros(len(Color), dtype=np.int64)))
+        sightings[color] += 1
+        seen[cone] = (place, sightings)
+    while len(seen) > _MOST_CONES:
+        del seen[next(iter(seen))]
+
+
+def _most_seen(sightings: IntArray) -> IntArray:
+    """The colour that each cone had most often; unknown where two had it equally often."""
+    known = sightings[:, 1:]
+    is_most = known == known.max(axis=1, keepdims=True)
+    return np.where(is_most.sum(axis=1) == 1, 1 + is_most.argmax(axis=1), Color.unknown)
+
+
+def _first_contradiction(votes: IntArray) -> Optional[int]:
+    """Index of the first cone of a stretch whose colours contradict a lane. Votes: 1 of a cone of the other side's
+    colour, -1 of one of the own. One cone alone is a miscoloured one: three more votes against are needed in a
+    stretch, two at the end of the boundary, where no cone behind can speak for it."""
+    total = best = first = begin = 0
+    for i, vote in enumerate([*votes.tolist(), 1]):
+        if total <= 0:
+            total, begin = 0, i
+        total += vote
+        if total > best:
+            best, first = total, begin
+    return first if best >= _CONTRADICTION else None
 
 
 def _along(line: FloatArray, place: FloatArray) -> int:

@@ -89,13 +89,16 @@ class Interface(unittest.TestCase):
             # What comes after goes no farther.
             later = planner.calculate_path_in_global_frame(by_type(), HERE, AHEAD)
             self.assertEqual(len(later), len(found))
-            self.assertTrue(len(found) == 0 or abs(later[-1, 0] - found[-1, 0]) < 0.5)
-            return None if len(found) == 0 else round(found[-1, 0], 6)
+            self.assertLess(abs(later[-1, 0] - found[-1, 0]), 0.5)
+            return round(found[-1, 0], 6)
 
         self.assertEqual(length(["BLUE", "BLUE", "BLUE", "BLUE"]), 12)
         self.assertEqual(length(["BLUE", "ORANGE_BIG", "UNKNOWN", "BLUE"]), 12)
-        self.assertEqual(length(["BLUE", "BLUE", "YELLOW", "BLUE"]), 4)
-        self.assertIsNone(length(["BLUE", "YELLOW", "BLUE", "BLUE"]))  # no path
+        self.assertEqual(length(["BLUE", "BLUE", "YELLOW", "BLUE"]), 12)  # one miscoloured cone
+        self.assertEqual(length(["BLUE", "YELLOW", "BLUE", "BLUE"]), 12)
+        self.assertEqual(length(["BLUE", "BLUE", "BLUE", "YELLOW"]), 12)
+        self.assertEqual(length(["BLUE", "BLUE", "YELLOW", "YELLOW"]), 4)
+        self.assertEqual(length(["YELLOW", "YELLOW", "YELLOW", "YELLOW"]), 3)  # the plan has a path, so there are rows
 
     def test_a_lane_beside_the_car_is_not_driven(self):
         planner = PathPlanner(MissionTypes.trackdrive)
@@ -172,6 +175,19 @@ class Interface(unittest.TestCase):
         self.assertEqual(ids(np.zeros((0, 2))).tolist(), [])
         self.assertEqual(ids(np.array([[0.0, 0.0]])).tolist(), [5])
 
+    def test_what_the_original_has_and_conelane_has_not_is_refused_aloud(self):
+        planner = PathPlanner(MissionTypes.trackdrive)
+        for name in ("cone_sorting", "cone_matching", "pathing", "config", "global_path", "set_global_path",
+                     "relocalizer"):
+            with self.assertRaisesRegex(AttributeError, name):
+                getattr(planner, name)
+            with self.assertRaisesRegex(AttributeError, name):
+                setattr(planner, name, None)
+        with self.assertRaises(AttributeError):
+            planner.mission = MissionTypes.skidpad
+        self.assertIsNone(planner.relocalization_info)
+        self.assertFalse(hasattr(PathPlanner(MissionTypes.skidpad), "relocalization_info"))
+
     def test_refusals(self):
         for mission in (MissionTypes.skidpad, MissionTypes.acceleration):
             with self.assertRaisesRegex(ValueError, "laps"):
@@ -194,6 +210,75 @@ class Interface(unittest.TestCase):
                                    ("time_s: must be a finite number", (STRAIGHT, HERE, AHEAD, np.nan))):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 plan(*arguments[:3], **({"time_s": arguments[3]} if len(arguments) > 3 else {}))
+
+
+class Frames(unittest.TestCase):
+    """In which frame cones and pose are given."""
+
+    X = np.arange(-20.0, 120.0, 4.0)
+    CONES = np.vstack([np.column_stack([X, np.full(len(X), 1.7)]), np.column_stack([X + 1.3, np.full(len(X), -1.7)])])
+
+    def view(self, x, noise_m=0.1, missed=0.1, seed=0):
+        rng = np.random.default_rng([seed, int(round(1000 * x))])
+        seen = (self.CONES[:, 0] > x) & (np.hypot(self.CONES[:, 0] - x, self.CONES[:, 1]) < 20.0)
+        seen &= rng.random(len(seen)) >= missed
+        return self.CONES[seen] - [x, 0.0] + rng.normal(0.0, noise_m, (int(seen.sum()), 2))
+
+    def test_cones_that_move_while_the_place_stays_are_in_the_cars_frame(self):
+        for direction in (AHEAD, np.array([0.0, 1.0])):
+            turn = np.array([direction, [-direction[1], direction[0]]])
+            planner = PathPlanner(MissionTypes.trackdrive)
+            for i, x in enumerate(np.arange(0.0, 12.0, 0.6)):
+                path = planner.calculate_path_in_global_frame(by_type(UNKNOWN=self.view(x) @ turn), HERE, direction)
+                self.assertEqual(planner.frame, "car" if i > 1 else planner.frame)
+                self.assertEqual((planner.path_age, planner.plan.state), (0, "following"))
+                np.testing.assert_allclose(path[:, 1:3] @ [-direction[1], direction[0]], 0.0, atol=0.4)
+                self.assertGreater(path[-1, 0], 10.0)
+
+    def test_a_car_at_rest_with_noisy_cones_is_not_in_its_own_frame(self):
+        planner = PathPlanner(MissionTypes.trackdrive)
+        for seed in range(60):
+            planner.calculate_path_in_global_frame(by_type(UNKNOWN=self.view(0.0, 0.15, 0.3, seed)), HERE, AHEAD)
+            self.assertEqual(planner.frame, "map", f"call {seed}")
+
+    def test_a_pose_that_freezes_costs_no_memory(self):
+        planner = PathPlanner(MissionTypes.trackdrive)
+        frozen = 0
+        for i, x in enumerate(np.arange(0.0, 40.0, 0.6)):
+            place = x if i % 12 < 8 else 0.6 * (i - i % 12 + 7)
+            cones = self.view(x) + [place, 0.0]
+            path = planner.calculate_path_in_global_frame(by_type(UNKNOWN=cones), np.array([place, 0.0]), AHEAD)
+            frozen += planner.frame == "car"
+            self.assertEqual(planner.frame, planner.frame if i % 12 >= 8 else "map", f"call {i}")
+            self.assertLess(np.abs(path[:, 2]).max(), 0.4)
+        self.assertGreater(frozen, 10)
+        for _ in range(5):  # nothing is seen: the memory of the map bridges it
+            planner.calculate_path_in_global_frame(by_type(), np.array([40.0, 0.0]), AHEAD)
+        self.assertEqual(planner.plan.state, "bridging")
+
+    def test_the_frame_may_be_told(self):
+        for frame in ("map", "car"):
+            planner = PathPlanner(MissionTypes.trackdrive, frame=frame)
+            for x in (0.0, 0.6, 1.2):
+                planner.calculate_path_in_global_frame(by_type(UNKNOWN=self.view(x)), HERE, AHEAD)
+                self.assertEqual(planner.frame, frame)
+        with self.assertRaisesRegex(ValueError, "frame: is 'cars'"):
+            PathPlanner(MissionTypes.trackdrive, frame="cars")
+
+    def test_what_makes_no_sense_is_refused(self):
+        for mission, is_moving, message in ((MissionTypes.acceleration, False, "mission acceleration"),
+                                            (MissionTypes.skidpad, False, "mission skidpad"),
+                                            (MissionTypes.trackdrive, True, "vehicle_position: moves")):
+            planner = PathPlanner(mission)
+            with self.assertRaisesRegex(ValueError, message):
+                for x in np.arange(0.0, 12.0, 0.6):
+                    place = np.array([x if is_moving else 0.0, 0.0])
+                    planner.calculate_path_in_global_frame(by_type(UNKNOWN=self.view(x)), place, AHEAD)
+            with self.assertRaisesRegex(ValueError, message):  # from the first call that shows it
+                told = PathPlanner(mission, frame="car")
+                for x in (0.0, 0.6):
+                    place = np.array([x if is_moving else 0.0, 0.0])
+                    told.calculate_path_in_global_frame(by_type(UNKNOWN=self.view(x)), place, AHEAD)
 
 
 class Missions(unittest.TestCase):
@@ -272,7 +357,6 @@ class RecordedRuns(unittest.TestCase):
             at_car += np.linalg.norm(path[0, 1:3] - position) < 1.0  # no path of an earlier frame
             both += len(left) > 0 and len(right) > 0
         self.assertEqual(count, 440)
-        # There is no path in 15 frames of this run, in 9 of them because colours contradict the lane of the planner.
         self.assertGreater(at_car, 415)
         self.assertGreater(both, 390)
 

@@ -84,6 +84,12 @@ TEST(BegunAtCar, ALaneThatLiesAsideIsNotJoined) {
     EXPECT_FALSE(begun_at_car(straight_line({5.0, -5.0}, 0.5, 10.0), car, nullptr, 0.5));
     EXPECT_TRUE(begun_at_car(straight_line({5.0, 3.0}, 0.5, 10.0), car, nullptr, 0.5))
         << "in a bend it begins a little aside";
+    EXPECT_TRUE(begun_at_car(straight_line({3.7, -4.8}, -1.7, 10.0), car, nullptr, 0.5))
+        << "behind a hairpin";
+    EXPECT_FALSE(begun_at_car(straight_line({3.7, -4.8}, 1.7, 10.0), car, nullptr, 0.5)) << "it leads back";
+    EXPECT_FALSE(begun_at_car(straight_line({0.5, 7.0}, 3.0, 10.0), car, nullptr, 0.5)) << "the other leg";
+    EXPECT_FALSE(begun_at_car(straight_line({2.0, 5.0}, 1.9, 10.0), car, nullptr, 0.5))
+        << "a bend too narrow";
 }
 
 TEST(BegunAtCar, AlongTheLaneThatLeadsThere) {
