@@ -22,16 +22,18 @@ Pose moved(const Pose& pose, const RigidShift& shift) {
 }  // namespace
 
 void LapCounter::clear() {
-    *this = LapCounter(settings_);
+    *this = LapCounter(settings_, laps_of_run_);
 }
 
 void LapCounter::move_along(const RigidShift& shift) {
-    if (first_) first_ = moved(*first_, shift);
-    if (last_) last_ = moved(*last_, shift);
+    for (std::optional<Pose>* pose : {&first_, &last_, &finish_}) {
+        if (*pose) **pose = moved(**pose, shift);
+    }
     line_ = moved(line_, shift);
 }
 
-void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memory) {
+std::optional<Pose> LapCounter::gate_on(const DrivableLane& lane, const ConeMemory& memory,
+                                        bool near_start) const {
     struct Post {
         double s_m;
         bool left;
@@ -39,7 +41,8 @@ void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memor
     std::vector<Post> posts;
     for (const ConeMemory::RememberedCone& cone : memory.cones()) {
         if (cone.sightings < 2 || color_of(cone) != ConeColor::orange) continue;
-        if ((cone.position - first_->position).norm() > settings_.gate_within_m) continue;
+        const Point& start = near_start ? first_->position : line_.position;
+        if (((cone.position - start).norm() <= settings_.gate_within_m) != near_start) continue;
         std::optional<Post> post;
         double nearest_m = kMaxSide_m;
         for (const DrivablePoint& point : lane.points) {
@@ -65,10 +68,15 @@ void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memor
         }
         if (left == 0 || right == 0) continue;
         const DrivablePoint middle = point_at(lane, sum_m / (left + right));
-        line_ = {middle.position, middle.heading_rad};
-        gate_ = true;
-        return;
+        return Pose{middle.position, middle.heading_rad};
     }
+    return std::nullopt;
+}
+
+bool LapCounter::crosses(const Pose& line, const Pose& pose) const {
+    return last_ && line.ahead_m(last_->position) < 0.0 && line.ahead_m(pose.position) >= 0.0 &&
+           std::abs(line.left_m(pose.position)) <= settings_.line_half_width_m &&
+           std::abs(std::remainder(pose.yaw_rad - line.yaw_rad, 2.0 * std::numbers::pi)) <= kWith_rad;
 }
 
 void LapCounter::observe(const Pose& pose, const DrivableLane& lane, const ConeMemory& memory) {
@@ -82,15 +90,18 @@ void LapCounter::observe(const Pose& pose, const DrivableLane& lane, const ConeM
         driven_m_ += step_m;
         since_line_m_ += step_m;
     }
-    if (!gate_ && driven_m_ < settings_.gate_within_m && lane.points.size() > 1) look_for_gate(lane, memory);
-    const double ahead_m = line_.ahead_m(pose.position);
-    const bool at_line =
-        std::abs(line_.left_m(pose.position)) <= settings_.line_half_width_m &&
-        std::abs(std::remainder(pose.yaw_rad - line_.yaw_rad, 2.0 * std::numbers::pi)) <= kWith_rad;
-    if (last_ && away_ && at_line && ahead_m >= 0.0 && line_.ahead_m(last_->position) < 0.0) {
+    const bool at_start = driven_m_ < settings_.gate_within_m;
+    if (lane.points.size() > 1 && (at_start ? !gate_ : laps_of_run_ == 1)) {
+        if (const std::optional<Pose> gate = gate_on(lane, memory, at_start)) {
+            (at_start ? line_ : finish_.emplace()) = *gate;
+            gate_ = true;
+        }
+    }
+    const bool at_finish = laps_ == 0 && finish_ && crosses(*finish_, pose);
+    if (at_finish || (away_ && crosses(line_, pose))) {
         ++laps_;
         away_ = false;
-        since_line_m_ = ahead_m;
+        since_line_m_ = (at_finish ? *finish_ : line_).ahead_m(pose.position);
     }
     const bool far = driven_m_ > settings_.gate_within_m &&
                      (pose.position - line_.position).norm() > settings_.line_away_m &&

@@ -2,7 +2,9 @@
 
 #include "evaluation/tracks/track.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 namespace conelane {
 
@@ -10,8 +12,8 @@ namespace conelane {
 inline constexpr double kDoubledTrackCone_m = 0.3;
 
 /// The track without cones within kDoubledTrackCone_m of an earlier cone of the same boundary: the later one
-/// is removed from the boundary and the map.
-[[nodiscard]] Track without_doubled_cones(Track track);
+/// is removed from the boundary and the map, and so are cones of no boundary that are known to repeat others.
+[[nodiscard]] Track without_doubled_cones(Track track, const std::vector<std::size_t>& repeated = {});
 
 // All readers return the track without doubled cones. They throw InputError if a file is missing, has another
 // format, holds a number that is not finite or beyond 10^7 m, or has a boundary of fewer than three cones
