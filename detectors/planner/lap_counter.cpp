@@ -13,6 +13,7 @@ namespace {
 constexpr double kMinSide_m = 1.0;  ///< of an orange cone from the centre line
 constexpr double kMaxSide_m = 4.0;
 constexpr double kGateDepth_m = 3.0;  ///< along the lane, the cones of one gate
+constexpr double kEndInView_m = 5.0;  ///< before a gate: from here the cones behind it are in view
 constexpr double kWith_rad = std::numbers::pi / 2.0;
 
 Pose moved(const Pose& pose, const RigidShift& shift) {
@@ -79,6 +80,16 @@ bool LapCounter::crosses(const Pose& line, const Pose& pose) const {
            std::abs(std::remainder(pose.yaw_rad - line.yaw_rad, 2.0 * std::numbers::pi)) <= kWith_rad;
 }
 
+bool LapCounter::nothing_ahead(const Pose& place, const ConeMemory& memory) {
+    constexpr double kAhead_m = 15.0;
+    constexpr double kAside_m = 8.0;
+    return std::ranges::none_of(memory.cones(), [&](const ConeMemory::RememberedCone& cone) {
+        const double ahead_m = place.ahead_m(cone.position);
+        return color_of(cone) != ConeColor::orange && ahead_m > 1.0 && ahead_m < kAhead_m &&
+               std::abs(place.left_m(cone.position)) < kAside_m;
+    });
+}
+
 void LapCounter::observe(const Pose& pose, const DrivableLane& lane, const ConeMemory& memory) {
     if (!first_) {
         first_ = pose;
@@ -91,17 +102,23 @@ void LapCounter::observe(const Pose& pose, const DrivableLane& lane, const ConeM
         since_line_m_ += step_m;
     }
     const bool at_start = driven_m_ < settings_.gate_within_m;
-    if (lane.points.size() > 1 && (at_start ? !gate_ : laps_of_run_ == 1)) {
+    if (lane.points.size() > 1 && (at_start ? !gate_ : laps_of_run_ == 1 && !passed_finish_)) {
         if (const std::optional<Pose> gate = gate_on(lane, memory, at_start)) {
             (at_start ? line_ : finish_.emplace()) = *gate;
-            gate_ = true;
+            gate_ = gate_ || at_start;
         }
     }
-    const bool at_finish = laps_ == 0 && finish_ && crosses(*finish_, pose);
-    if (at_finish || (away_ && crosses(line_, pose))) {
+    if (finish_ && crosses(*finish_, pose)) {
+        passed_finish_ = true;
+        since_line_m_ = finish_->ahead_m(pose.position);
+    }
+    const bool in_view = finish_ && finish_->ahead_m(pose.position) > -kEndInView_m;
+    course_ends_ = in_view && nothing_ahead(passed_finish_ ? pose : *finish_, memory);
+    if (laps_ == 0 && passed_finish_ && (gate_ || course_ends_)) ++laps_;
+    if (away_ && crosses(line_, pose)) {
         ++laps_;
         away_ = false;
-        since_line_m_ = (at_finish ? *finish_ : line_).ahead_m(pose.position);
+        since_line_m_ = line_.ahead_m(pose.position);
     }
     const bool far = driven_m_ > settings_.gate_within_m &&
                      (pose.position - line_.position).norm() > settings_.line_away_m &&

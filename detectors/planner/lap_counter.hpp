@@ -14,7 +14,7 @@ namespace conelane {
 ///
 /// The line is the gate of orange cones that the first lane passes, or else the place of the first pose,
 /// across its heading. It counts when the car passes it in its direction, and again after the car was away.
-/// A run of one lap may end elsewhere, at another such gate.
+/// A run of one lap may end elsewhere: at another such gate, if it began at one or if the course ends there.
 class LapCounter {
   public:
     LapCounter(const CourseSettings& settings, int laps_of_run)
@@ -26,8 +26,8 @@ class LapCounter {
     void clear();
 
     [[nodiscard]] int laps() const { return laps_; }
-    /// The gate elsewhere at which a run of one lap ends, if it is known.
-    [[nodiscard]] const std::optional<Pose>& finish() const { return finish_; }
+    /// The gate at which the course ends, if it is known.
+    [[nodiscard]] std::optional<Pose> end() const { return course_ends_ ? finish_ : std::nullopt; }
     /// Distance driven since the last counted line [m].
     [[nodiscard]] double since_line_m() const { return since_line_m_; }
 
@@ -35,13 +35,16 @@ class LapCounter {
     /// The first gate ahead on a lane: near the first pose, or else away from the line.
     [[nodiscard]] std::optional<Pose> gate_on(const DrivableLane& lane, const ConeMemory& memory,
                                               bool near_start) const;
+    [[nodiscard]] static bool nothing_ahead(const Pose& place, const ConeMemory& memory);
     [[nodiscard]] bool crosses(const Pose& line, const Pose& pose) const;
 
     CourseSettings settings_;
     int laps_of_run_;
     std::optional<Pose> first_;
     Pose line_;
-    std::optional<Pose> finish_;
+    std::optional<Pose> finish_;  ///< another gate
+    bool passed_finish_ = false;
+    bool course_ends_ = false;  ///< nothing is ahead of that gate, or, behind it, of the car
     bool gate_ = false;
     std::optional<Pose> last_;
     bool away_ = false;  ///< far enough from the line since it counted

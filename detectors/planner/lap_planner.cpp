@@ -248,9 +248,9 @@ LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {
 /// The way behind a finish where the course ends: straight on, so that the car can cross it and come to rest.
 void LapPlanner::lead_out(Plan& plan) const {
     constexpr double kAtGate_m = 3.0;
-    if (!counter_.finish()) return;
-    const Pose& gate = *counter_.finish();
-    const double to_gate_m = -gate.ahead_m(pose_.position);
+    const std::optional<Pose> gate = counter_.end();
+    if (!gate) return;
+    const double to_gate_m = -gate->ahead_m(pose_.position);
     const bool is_known = !plan.lane.points.empty();
     if (is_known ? std::abs(plan.lane.length_m - to_gate_m) > kAtGate_m : to_gate_m > kAtGate_m) return;
     const double from_m = is_known ? -kAtGate_m : -to_gate_m;
@@ -259,7 +259,7 @@ void LapPlanner::lead_out(Plan& plan) const {
     DrivableLane exit;
     for (double s_m = 0.0; from_m + s_m <= course_settings_.stop_m; s_m += step_m) {
         exit.points.push_back(
-            {s_m, gate.position + (from_m + s_m) * gate.heading(), gate.yaw_rad, 0.0, half_m, half_m});
+            {s_m, gate->position + (from_m + s_m) * gate->heading(), gate->yaw_rad, 0.0, half_m, half_m});
         exit.length_m = s_m;
     }
     if (exit.points.size() < 2) return;

@@ -20,7 +20,7 @@ namespace {
 enum Column : std::size_t { tag, x, y, direction };
 constexpr std::array<const char*, 4> kColumns{"tag", "x", "y", "direction"};
 
-/// Names of columns in headers, without what is no letter; the first one of a column counts.
+/// Names of columns in headers, their letters only; the first one of a column counts.
 constexpr std::pair<std::string_view, Column> kColumnNames[] = {{"tag", tag},
                                                                 {"color", tag},
                                                                 {"colour", tag},

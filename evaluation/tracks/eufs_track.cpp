@@ -192,18 +192,21 @@ class EufsBoundaries {
     void put_into(Track& track) {
         leave_out(far_cones(track.cones, kept_));
         for (const ConeColor color : {ConeColor::blue, ConeColor::yellow}) {
-            leave_out(second_row(track.cones, kept_of(color)));
+            leave_out(second_row(track.cones, of(color, kept_)));
         }
-        const std::size_t fewest = kept_.size() - kept_.size() / 10;  // with fewer, the colors mean nothing
-        for (order(track); kept_.size() > fewest; order(track)) {
-            // Whether the course is closed can be told only afterwards.
-            const auto misplaced = most_misplaced_cone(track);
-            if (!misplaced) break;
-            leave_out({*misplaced});
+        require_enough_cones(with(kept_, track, false), file_);
+        Remaining best = without_misplaced(track, true);
+        if (!best.is_closed || !best.left_out.empty()) {
+            // In a ring the ends of an open course seem misplaced, and its misplaced cones may not.
+            Remaining open = without_misplaced(track, false);
+            const bool fewer = open.left_out.size() < best.left_out.size();
+            if (!open.is_closed && (!best.is_closed || fewer)) best = std::move(open);
         }
-        track.closed = may_close(track.cones, kept_of(ConeColor::blue)) ||
-                       may_close(track.cones, kept_of(ConeColor::yellow));
-        if (track.closed) order(track);
+        kept_ = std::move(best.kept);
+        left_out_.insert(left_out_.end(), best.left_out.begin(), best.left_out.end());
+        with(kept_, track, best.is_closed);
+        require_enough_cones(track, file_);
+        order_boundaries(track, of(ConeColor::orange, kept_));
         if (!left_out_.empty()) track.warnings.push_back(warning());
     }
 
@@ -217,16 +220,40 @@ class EufsBoundaries {
     }
 
   private:
-    void order(Track& track) const {
-        track.left = kept_of(ConeColor::blue);
-        track.right = kept_of(ConeColor::yellow);
-        require_enough_cones(track, file_);
-        order_boundaries(track, kept_of(ConeColor::orange));
+    struct Remaining {
+        Boundary kept;
+        std::vector<MisplacedCone> left_out{};
+        bool is_closed = false;  ///< as it seems without those
+    };
+
+    [[nodiscard]] Remaining without_misplaced(Track track, bool closed) const {
+        Remaining result{kept_};
+        const std::size_t fewest = kept_.size() - kept_.size() / 10;  // with fewer, the colors mean nothing
+        while (result.kept.size() > fewest) {
+            with(result.kept, track, closed);
+            if (std::min(track.left.size(), track.right.size()) < 3) break;
+            order_boundaries(track, of(ConeColor::orange, result.kept));
+            const auto misplaced = most_misplaced_cone(track);
+            if (!misplaced) break;
+            std::erase(result.kept, misplaced->cone);
+            result.left_out.push_back(*misplaced);
+        }
+        result.is_closed = may_close(track.cones, of(ConeColor::blue, result.kept)) ||
+                           may_close(track.cones, of(ConeColor::yellow, result.kept));
+        return result;
     }
 
-    [[nodiscard]] Boundary kept_of(ConeColor color) const {
+    /// The track with boundaries, unordered and without orange cones.
+    const Track& with(const Boundary& kept, Track& track, bool closed) const {
+        track.left = of(ConeColor::blue, kept);
+        track.right = of(ConeColor::yellow, kept);
+        track.closed = closed;
+        return track;
+    }
+
+    [[nodiscard]] Boundary of(ConeColor color, const Boundary& kept) const {
         Boundary result;
-        std::ranges::copy_if(kept_, std::back_inserter(result),
+        std::ranges::copy_if(kept, std::back_inserter(result),
                              [&](std::size_t index) { return content_.cones[index].color == color; });
         return result;
     }
@@ -276,7 +303,6 @@ Track read_eufs_track(const std::filesystem::path& file) {
     track.name = "eufs_" + file.stem().string();
     if (!content.guess.empty()) track.warnings.push_back(content.guess);
     track.cones = content.cones;
-    track.closed = false;
     EufsBoundaries boundaries(content, file);
     boundaries.put_into(track);
     if (track.closed) {

@@ -61,36 +61,22 @@ std::vector<MisplacedCone> far_cones(const std::vector<Cone>& cones, std::span<c
 }
 
 std::vector<MisplacedCone> second_row(const std::vector<Cone>& cones, std::span<const std::size_t> boundary) {
-    constexpr double kMaxShare = 0.6;  // of the distance to the second nearest neighbour
-    if (boundary.size() < 4) return {};
-    std::vector<double> nearest_m;
-    std::vector<double> second_m;
-    for (const std::size_t cone : boundary) {
-        std::vector<double> distances_m;
-        for (const std::size_t other : boundary) {
-            if (other != cone) distances_m.push_back((cones[other].position - cones[cone].position).norm());
-        }
-        std::ranges::partial_sort(distances_m, distances_m.begin() + 2);
-        nearest_m.push_back(distances_m[0]);
-        second_m.push_back(distances_m[1]);
-    }
-    const double pair_m = median(nearest_m);
-    const double next_m = median(second_m);
-    if (pair_m > kMaxShare * next_m) return {};
-    const double same_m = std::max(kDoubledTrackCone_m, std::min(2.5 * pair_m, 0.5 * (pair_m + next_m)));
-    std::vector<std::size_t> first_row;
+    constexpr double kRowsApart_m = 0.5;  // the boundaries of two legs may be 1 m apart
+    constexpr double kMinShare = 0.4;     // of cones that repeat earlier ones: half, less what is far apart
     std::vector<MisplacedCone> second;
+    std::vector<std::size_t> first;
     for (const std::size_t cone : boundary) {
-        double to_row_m = std::numeric_limits<double>::infinity();
-        for (const std::size_t other : first_row) {
-            to_row_m = std::min(to_row_m, (cones[other].position - cones[cone].position).norm());
+        double nearest_m = std::numeric_limits<double>::infinity();
+        for (const std::size_t other : first) {
+            nearest_m = std::min(nearest_m, (cones[other].position - cones[cone].position).norm());
         }
-        if (to_row_m <= same_m) {
-            second.push_back({cone, "repeats another cone", to_row_m <= kDoubledTrackCone_m});
+        if (nearest_m > kRowsApart_m) {
+            first.push_back(cone);
         } else {
-            first_row.push_back(cone);
+            second.push_back({cone, "repeats another cone", nearest_m <= kDoubledTrackCone_m});
         }
     }
+    if (static_cast<double>(second.size()) < kMinShare * static_cast<double>(boundary.size())) return {};
     return second;
 }
 

@@ -22,8 +22,8 @@ struct MisplacedCone {
 [[nodiscard]] std::vector<MisplacedCone> far_cones(const std::vector<Cone>& cones,
                                                    std::span<const std::size_t> some);
 
-/// The cones of the second row if a boundary, still unordered, was written twice: most of its cones have one
-/// neighbour much nearer than the next one.
+/// The cones of the second row if a boundary, still unordered, was written twice: nearly half of its cones
+/// stand within 0.5 m of an earlier one.
 [[nodiscard]] std::vector<MisplacedCone> second_row(const std::vector<Cone>& cones,
                                                     std::span<const std::size_t> boundary);
 
