@@ -265,7 +265,8 @@ void LapPlanner::lead_out(Plan& plan) const {
     if (exit.points.size() < 2) return;
     const double untrusted_m = plan.lane.length_m - plan.safe_m;
     plan.lane = is_known ? extended(plan.lane, exit, step_m) : exit;
-    if (untrusted_m < step_m) plan.lane.trusted_m = plan.safe_m = plan.lane.length_m;
+    if (untrusted_m < step_m) plan.lane.trusted_m = plan.lane.length_m;
+    plan.safe_m = plan.lane.trusted_m.value_or(0.0);
     if (is_known) return;
     plan.state = PlanState::bridging;
     plan.age_s = *time_s_ - path_.time_s();
