@@ -31,13 +31,13 @@ inline constexpr double kDoubledTrackCone_m = 0.3;
 
 /// An EUFS track, or another course that read_cone_table reads: unordered cones, blue ones left and yellow
 /// ones right of the driving direction. Cones that cannot belong to their boundary stay in the map as cones
-/// of no boundary, and a warning names them. Each boundary becomes the shortest tour of its cones that starts at the cone nearest ahead of
-/// `car_start`; without one, at the first left cone of the file and the right one nearest to it. If neither
-/// color can close without an unusually long edge that turns back, the course is open: each boundary becomes
-/// the shortest path of its cones, from end to end. Orange cones join the nearer boundary, except those
-/// beside a cone of its line; cones of other tags join none, and a warning counts them, except `unknown`. Ids
-/// count the cones in file order. It is an error if the colors of a closed course do not bound a ring, or
-/// contradict the direction of `car_start`.
+/// of no boundary, and a warning names them. Each boundary becomes the shortest tour of its cones that starts
+/// at the cone nearest ahead of `car_start`; without one, at the first left cone of the file and the right
+/// one nearest to it. If neither color can close without an unusually long edge that turns back, the course
+/// is open: each boundary becomes the shortest path of its cones, from end to end. Orange cones join the
+/// nearer boundary, except those beside a cone of its line; cones of other tags join none, and a warning
+/// counts them, except `unknown`. Ids count the cones in file order. It is an error if the colors of a closed
+/// course do not bound a ring, or contradict the direction of `car_start`.
 [[nodiscard]] Track read_eufs_track(const std::filesystem::path& file);
 
 }  // namespace conelane
