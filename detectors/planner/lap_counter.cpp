@@ -114,7 +114,7 @@ void LapCounter::observe(const Pose& pose, const DrivableLane& lane, const ConeM
     }
     const bool in_view = finish_ && finish_->ahead_m(pose.position) > -kEndInView_m;
     course_ends_ = in_view && nothing_ahead(passed_finish_ ? pose : *finish_, memory);
-    if (laps_ == 0 && passed_finish_ && (gate_ || course_ends_)) ++laps_;
+    if (laps_ == 0 && passed_finish_ && course_ends_) ++laps_;
     if (away_ && crosses(line_, pose)) {
         ++laps_;
         away_ = false;

@@ -14,7 +14,7 @@ namespace conelane {
 ///
 /// The line is the gate of orange cones that the first lane passes, or else the place of the first pose,
 /// across its heading. It counts when the car passes it in its direction, and again after the car was away.
-/// A run of one lap may end elsewhere: at another such gate, if it began at one or if the course ends there.
+/// A run of one lap may end elsewhere: at another such gate, if nothing comes behind it.
 class LapCounter {
   public:
     LapCounter(const CourseSettings& settings, int laps_of_run)
