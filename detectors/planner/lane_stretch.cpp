@@ -285,7 +285,7 @@ DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, doub
     DrivableLane result = measured(std::move(points), step_m);
     result.left_inferred = lane.left_inferred;
     result.right_inferred = lane.right_inferred;
-    result.trusted_m = lane.trusted_m;
+    if (lane.trusted_m) result.trusted_m = std::min(*lane.trusted_m, result.length_m);
     result.bridged = lane.bridged;
     return result;
 }

@@ -14,6 +14,7 @@ namespace {
 constexpr double kMinSide_m = 1.0;  ///< of an orange cone from the centre line
 constexpr double kMaxSide_m = 4.0;
 constexpr double kGateDepth_m = 3.0;  ///< along the lane, the cones of one gate
+constexpr double kEndInView_m = 5.0;  ///< before a gate: from here the cones behind it are in view
 constexpr double kWith_rad = std::numbers::pi / 2.0;
 
 Pose moved(const Pose& pose, const RigidShift& shift) {
@@ -23,16 +24,18 @@ Pose moved(const Pose& pose, const RigidShift& shift) {
 }  // namespace
 
 void LapCounter::clear() {
-    *this = LapCounter(settings_);
+    *this = LapCounter(settings_, laps_of_run_);
 }
 
 void LapCounter::move_along(const RigidShift& shift) {
-    if (first_) first_ = moved(*first_, shift);
-    if (last_) last_ = moved(*last_, shift);
+    for (std::optional<Pose>* pose : {&first_, &last_, &finish_}) {
+        if (*pose) **pose = moved(**pose, shift);
+    }
     line_ = moved(line_, shift);
 }
 
-void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memory) {
+std::optional<Pose> LapCounter::gate_on(const DrivableLane& lane, const ConeMemory& memory,
+                                        bool near_start) const {
     struct Post {
         double s_m;
         bool left;
@@ -42,7 +45,8 @@ void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memor
     for (const ConeMemory::RememberedCone& cone : memory.cones()) {
         const ConeColor color = color_of(cone);
         if (cone.sightings < 2 || !is_orange(color)) continue;
-        if ((cone.position - first_->position).norm() > settings_.gate_within_m) continue;
+        const Point& start = near_start ? first_->position : line_.position;
+        if (((cone.position - start).norm() <= settings_.gate_within_m) != near_start) continue;
         std::optional<Post> post;
         double nearest_m = kMaxSide_m;
         for (const DrivablePoint& point : lane.points) {
@@ -69,10 +73,25 @@ void LapCounter::look_for_gate(const DrivableLane& lane, const ConeMemory& memor
         }
         if (left == 0 || right == 0) continue;
         const DrivablePoint middle = point_at(lane, sum_m / (left + right));
-        line_ = {middle.position, middle.heading_rad};
-        gate_ = true;
-        return;
+        return Pose{middle.position, middle.heading_rad};
     }
+    return std::nullopt;
+}
+
+bool LapCounter::crosses(const Pose& line, const Pose& pose) const {
+    return last_ && line.ahead_m(last_->position) < 0.0 && line.ahead_m(pose.position) >= 0.0 &&
+           std::abs(line.left_m(pose.position)) <= settings_.line_half_width_m &&
+           std::abs(std::remainder(pose.yaw_rad - line.yaw_rad, 2.0 * std::numbers::pi)) <= kWith_rad;
+}
+
+bool LapCounter::nothing_ahead(const Pose& place, const ConeMemory& memory) {
+    constexpr double kAhead_m = 15.0;
+    constexpr double kAside_m = 8.0;
+    return std::ranges::none_of(memory.cones(), [&](const ConeMemory::RememberedCone& cone) {
+        const double ahead_m = place.ahead_m(cone.position);
+        return !is_orange(color_of(cone)) && ahead_m > 1.0 && ahead_m < kAhead_m &&
+               std::abs(place.left_m(cone.position)) < kAside_m;
+    });
 }
 
 void LapCounter::observe(const Pose& pose, const DrivableLane& lane, const ConeMemory& memory) {
@@ -86,15 +105,24 @@ void LapCounter::observe(const Pose& pose, const DrivableLane& lane, const ConeM
         driven_m_ += step_m;
         since_line_m_ += step_m;
     }
-    if (!gate_ && driven_m_ < settings_.gate_within_m && lane.points.size() > 1) look_for_gate(lane, memory);
-    const double ahead_m = line_.ahead_m(pose.position);
-    const bool at_line =
-        std::abs(line_.left_m(pose.position)) <= settings_.line_half_width_m &&
-        std::abs(std::remainder(pose.yaw_rad - line_.yaw_rad, 2.0 * std::numbers::pi)) <= kWith_rad;
-    if (last_ && away_ && at_line && ahead_m >= 0.0 && line_.ahead_m(last_->position) < 0.0) {
+    const bool at_start = driven_m_ < settings_.gate_within_m;
+    if (lane.points.size() > 1 && (at_start ? !gate_ : laps_of_run_ == 1 && !passed_finish_)) {
+        if (const std::optional<Pose> gate = gate_on(lane, memory, at_start)) {
+            (at_start ? line_ : finish_.emplace()) = *gate;
+            gate_ = gate_ || at_start;
+        }
+    }
+    if (finish_ && crosses(*finish_, pose)) {
+        passed_finish_ = true;
+        since_line_m_ = finish_->ahead_m(pose.position);
+    }
+    const bool in_view = finish_ && finish_->ahead_m(pose.position) > -kEndInView_m;
+    course_ends_ = in_view && nothing_ahead(passed_finish_ ? pose : *finish_, memory);
+    if (laps_ == 0 && passed_finish_ && course_ends_) ++laps_;
+    if (away_ && crosses(line_, pose)) {
         ++laps_;
         away_ = false;
-        since_line_m_ = ahead_m;
+        since_line_m_ = line_.ahead_m(pose.position);
     }
     const bool far = driven_m_ > settings_.gate_within_m &&
                      (pose.position - line_.position).norm() > settings_.line_away_m &&

@@ -32,7 +32,7 @@ class LapPlanner final : public Planner {
           detector_(std::move(detector)),
           path_(choice_settings_, options.drivable.step_m, options.max_age_s),
           choice_(choice_settings_),
-          counter_(course_settings_),
+          counter_(course_settings_, laps_),
           course_(course_settings_, options.drivable.step_m) {}
 
     Plan update(const Frame& frame, const DetectionLimits& limits) override;
@@ -53,6 +53,7 @@ class LapPlanner final : public Planner {
     [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left) const;
     [[nodiscard]] bool is_worse(const DrivableLane& left, const DrivableLane& known) const;
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
+    void lead_out(Plan& plan) const;
     void finish(Plan& plan) const;
 
     PlannerOptions options_;
@@ -142,6 +143,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     }
     course_.record(plan.lane);
     counter_.observe(frame.pose, plan.lane, cones_);
+    lead_out(plan);
     plan.lap = std::min(counter_.laps(), laps_);
     if (counter_.laps() >= laps_) finish(plan);
     last_ = plan;
@@ -241,6 +243,33 @@ LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {
         merged.into = cones_.given_id(merged.into);
     }
     return answer;
+}
+
+/// The way behind a finish where the course ends: straight on, so that the car can cross it and come to rest.
+void LapPlanner::lead_out(Plan& plan) const {
+    constexpr double kAtGate_m = 3.0;
+    const std::optional<Pose> gate = counter_.end();
+    if (!gate) return;
+    const double to_gate_m = -gate->ahead_m(pose_.position);
+    const bool is_known = !plan.lane.points.empty();
+    if (is_known ? std::abs(plan.lane.length_m - to_gate_m) > kAtGate_m : to_gate_m > kAtGate_m) return;
+    const double from_m = is_known ? -kAtGate_m : -to_gate_m;
+    const double step_m = options_.drivable.step_m;
+    const double half_m = options_.drivable.default_width_m / 2.0;
+    DrivableLane exit;
+    for (double s_m = 0.0; from_m + s_m <= course_settings_.stop_m; s_m += step_m) {
+        exit.points.push_back(
+            {s_m, gate->position + (from_m + s_m) * gate->heading(), gate->yaw_rad, 0.0, half_m, half_m});
+        exit.length_m = s_m;
+    }
+    if (exit.points.size() < 2) return;
+    const double untrusted_m = plan.lane.length_m - plan.safe_m;
+    plan.lane = is_known ? extended(plan.lane, exit, step_m) : exit;
+    if (untrusted_m < step_m) plan.lane.trusted_m = plan.lane.length_m;
+    plan.safe_m = plan.lane.trusted_m.value_or(0.0);
+    if (is_known) return;
+    plan.state = PlanState::bridging;
+    plan.age_s = *time_s_ - path_.time_s();
 }
 
 void LapPlanner::finish(Plan& plan) const {

@@ -32,14 +32,11 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
     std::size_t laps_with_scenes = 0;
     std::vector<Track> tracks;
     for (const std::string& spec : track_specs)
-        std::ranges::move(load_tracks(spec), std::back_inserter(tracks));
+        std::ranges::move(load_tracks_aloud(spec), std::back_inserter(tracks));
     std::size_t done = 0;  // laps
     for (const Track& track : tracks) {
         const auto [entry, is_new] = set.tracks.emplace(track.name, boundaries(track));
         if (!is_new) throw InputError("", 0, "--tracks", "track '" + track.name + "' is named twice");
-        for (const std::string& warning : track.warnings) {
-            fmt::print(stderr, "conelane: {}: {}\n", track.name, warning);
-        }
         const TrackLaps laps(track, options);
         std::vector<std::string> of_track;  // ids of the scenes left out
         for (std::size_t lap = 0; lap < laps.size(); ++lap) {

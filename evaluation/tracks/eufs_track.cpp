@@ -1,17 +1,17 @@
 #include "evaluation/files/input_error.hpp"
+#include "evaluation/tracks/cone_table.hpp"
+#include "evaluation/tracks/misplaced_cones.hpp"
 #include "evaluation/tracks/shortest_tour.hpp"
 #include "evaluation/tracks/track_checks.hpp"
 #include "evaluation/tracks/track_readers.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
-#include <optional>
-#include <sstream>
+#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include <boost/geometry.hpp>
@@ -22,124 +22,6 @@
 
 namespace conelane {
 namespace {
-
-/// The content of an EUFS file, still unordered.
-struct EufsCones {
-    std::vector<Cone> cones;
-    std::vector<std::size_t> blue;
-    std::vector<std::size_t> yellow;
-    std::vector<std::size_t> orange;  ///< small and big ones
-    std::optional<Pose> car_start;
-    std::size_t car_start_line = 0;
-    std::map<std::string, std::size_t> other_tags;  ///< number of cones whose tag belongs to no boundary
-};
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlank = " \t\r";
-    const std::size_t first = text.find_first_not_of(kBlank);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-    std::vector<std::string_view> fields;
-    while (true) {
-        const std::size_t comma = line.find(',');
-        fields.push_back(trimmed(line.substr(0, comma)));
-        if (comma == std::string_view::npos) return fields;
-        line.remove_prefix(comma + 1);
-    }
-}
-
-/// The columns that are read, found by the header line.
-class EufsColumns {
-  public:
-    EufsColumns(std::filesystem::path file, std::size_t line, std::string_view header)
-        : file_(std::move(file)) {
-        const std::vector<std::string_view> names = fields_of(header);
-        const auto column = [&](std::string_view name) {
-            const auto found = std::ranges::find(names, name);
-            if (found == names.end()) throw InputError(file_, line, std::string(name), "column missing");
-            return static_cast<std::size_t>(found - names.begin());
-        };
-        tag_ = column("tag");
-        x_ = column("x");
-        y_ = column("y");
-        direction_ = column("direction");
-    }
-
-    void read_row(std::size_t line, std::string_view row, EufsCones& result) const {
-        const std::vector<std::string_view> fields = fields_of(row);
-        const std::string_view tag = field(fields, tag_, line, "tag");
-        const Point position{number(fields, x_, line, "x"), number(fields, y_, line, "y")};
-        if (tag == "car_start") {
-            if (result.car_start) throw InputError(file_, line, "car_start", "is there twice");
-            result.car_start = Pose{position, number(fields, direction_, line, "direction")};
-            result.car_start_line = line;
-            return;
-        }
-        Cone cone;
-        cone.id = static_cast<ConeId>(result.cones.size());
-        cone.position = position;
-        if (tag == "blue") {
-            cone.color = ConeColor::blue;
-            result.blue.push_back(result.cones.size());
-        } else if (tag == "yellow") {
-            cone.color = ConeColor::yellow;
-            result.yellow.push_back(result.cones.size());
-        } else if (tag == "orange" || tag == "big_orange") {
-            cone.color = ConeColor::orange;
-            result.orange.push_back(result.cones.size());
-        } else if (tag != "unknown") {
-            ++result.other_tags[std::string(tag)];
-        }
-        result.cones.push_back(cone);
-    }
-
-  private:
-    [[nodiscard]] std::string_view field(const std::vector<std::string_view>& fields, std::size_t column,
-                                         std::size_t line, const char* key) const {
-        if (column >= fields.size() || fields[column].empty()) throw InputError(file_, line, key, "missing");
-        return fields[column];
-    }
-
-    [[nodiscard]] double number(const std::vector<std::string_view>& fields, std::size_t column,
-                                std::size_t line, const char* key) const {
-        const std::string_view text = field(fields, column, line, key);
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc{} || end != text.data() + text.size()) {
-            throw InputError(file_, line, key, fmt::format("'{}' is not a number", text));
-        }
-        if (const std::string fault = coordinate_fault(value); !fault.empty()) {
-            throw InputError(file_, line, key, fault);
-        }
-        return value;
-    }
-
-    std::filesystem::path file_;
-    std::size_t tag_ = 0;
-    std::size_t x_ = 0;
-    std::size_t y_ = 0;
-    std::size_t direction_ = 0;
-};
-
-EufsCones read_eufs_cones(const std::filesystem::path& file) {
-    EufsCones result;
-    std::optional<EufsColumns> columns;
-    std::istringstream content(file_content(file));
-    std::string row;
-    for (std::size_t line = 1; std::getline(content, row); ++line) {
-        if (trimmed(row).empty()) continue;
-        if (columns) {
-            columns->read_row(line, row, result);
-        } else {
-            columns.emplace(file, line, row);
-        }
-    }
-    if (!columns) throw InputError(file, 0, "tag", "column missing");
-    return result;
-}
 
 using Boundary = std::vector<std::size_t>;  ///< indices into the cones
 
@@ -285,7 +167,7 @@ void direct_closed_boundaries(Track& track, const std::filesystem::path& file) {
     if ((boost::geometry::area(right_ring) > 0.0) != counter_clockwise) std::ranges::reverse(track.right);
 }
 
-void require_direction_of_car(const Track& track, const EufsCones& content,
+void require_direction_of_car(const Track& track, const ConeTable& content,
                               const std::filesystem::path& file) {
     const std::vector<Point> left = positions(track.cones, track.left);
     const PolylineFoot foot = foot_on_polyline(content.car_start->position, left, track.closed);
@@ -295,6 +177,113 @@ void require_direction_of_car(const Track& track, const EufsCones& content,
     throw InputError(file, content.car_start_line, "direction",
                      "the car does not drive with the blue cones on its left");
 }
+
+/// The boundaries of a table, in order and without cones that cannot belong to them.
+class EufsBoundaries {
+  public:
+    EufsBoundaries(const ConeTable& content, const std::filesystem::path& file)
+        : content_(content), file_(file) {
+        for (std::size_t index = 0; index < content.cones.size(); ++index) {
+            if (content.cones[index].color != ConeColor::unknown) kept_.push_back(index);
+        }
+    }
+
+    /// Sets the boundaries of a track that has the cones.
+    void put_into(Track& track) {
+        leave_out(far_cones(track.cones, kept_));
+        for (const ConeColor color : {ConeColor::blue, ConeColor::yellow}) {
+            leave_out(second_row(track.cones, of(color, kept_)));
+        }
+        require_enough_cones(with(kept_, track, false), file_);
+        Remaining best = without_misplaced(track, true);
+        if (!best.is_closed || !best.left_out.empty()) {
+            // In a ring the ends of an open course seem misplaced, and its misplaced cones may not.
+            Remaining open = without_misplaced(track, false);
+            const bool fewer = open.left_out.size() < best.left_out.size();
+            if (!open.is_closed && (!best.is_closed || fewer)) best = std::move(open);
+        }
+        kept_ = std::move(best.kept);
+        left_out_.insert(left_out_.end(), best.left_out.begin(), best.left_out.end());
+        with(kept_, track, best.is_closed);
+        require_enough_cones(track, file_);
+        order_boundaries(track, of(ConeColor::orange, kept_));
+        if (!left_out_.empty()) track.warnings.push_back(warning());
+    }
+
+    /// Cones at the place of another one of their boundary.
+    [[nodiscard]] Boundary repeated() const {
+        Boundary result;
+        for (const MisplacedCone& cone : left_out_) {
+            if (cone.is_same) result.push_back(cone.cone);
+        }
+        return result;
+    }
+
+  private:
+    struct Remaining {
+        Boundary kept;
+        std::vector<MisplacedCone> left_out{};
+        bool is_closed = false;  ///< as it seems without those
+    };
+
+    [[nodiscard]] Remaining without_misplaced(Track track, bool closed) const {
+        Remaining result{kept_};
+        const std::size_t fewest = kept_.size() - kept_.size() / 10;  // with fewer, the colors mean nothing
+        while (result.kept.size() > fewest) {
+            with(result.kept, track, closed);
+            if (std::min(track.left.size(), track.right.size()) < 3) break;
+            order_boundaries(track, of(ConeColor::orange, result.kept));
+            const auto misplaced = most_misplaced_cone(track);
+            if (!misplaced) break;
+            std::erase(result.kept, misplaced->cone);
+            result.left_out.push_back(*misplaced);
+        }
+        result.is_closed = may_close(track.cones, of(ConeColor::blue, result.kept)) ||
+                           may_close(track.cones, of(ConeColor::yellow, result.kept));
+        return result;
+    }
+
+    /// The track with boundaries, unordered and without orange cones.
+    const Track& with(const Boundary& kept, Track& track, bool closed) const {
+        track.left = of(ConeColor::blue, kept);
+        track.right = of(ConeColor::yellow, kept);
+        track.closed = closed;
+        return track;
+    }
+
+    [[nodiscard]] Boundary of(ConeColor color, const Boundary& kept) const {
+        Boundary result;
+        std::ranges::copy_if(kept, std::back_inserter(result),
+                             [&](std::size_t index) { return content_.cones[index].color == color; });
+        return result;
+    }
+
+    void leave_out(const std::vector<MisplacedCone>& misplaced) {
+        for (const MisplacedCone& cone : misplaced) {
+            std::erase(kept_, cone.cone);
+            left_out_.push_back(cone);
+        }
+    }
+
+    [[nodiscard]] std::string warning() const {
+        constexpr std::size_t kNamed = 5;
+        std::vector<std::string> names;
+        for (const MisplacedCone& misplaced :
+             std::span(left_out_).first(std::min(left_out_.size(), kNamed))) {
+            const Cone& cone = content_.cones[misplaced.cone];
+            names.push_back(fmt::format("the {} cone of line {} at ({:.2f}, {:.2f}) {}",
+                                        to_string(cone.color), content_.lines[misplaced.cone],
+                                        cone.position.x(), cone.position.y(), misplaced.reason));
+        }
+        if (left_out_.size() > kNamed) names.push_back(fmt::format("{} more", left_out_.size() - kNamed));
+        return fmt::format("left out of the boundaries: {}", fmt::join(names, ", "));
+    }
+
+    const ConeTable& content_;
+    const std::filesystem::path& file_;
+    Boundary kept_;  ///< cones of boundaries, in the order of the file
+    std::vector<MisplacedCone> left_out_;
+};
 
 std::string warning_of(const std::map<std::string, std::size_t>& other_tags) {
     std::size_t cones = 0;
@@ -309,18 +298,13 @@ std::string warning_of(const std::map<std::string, std::size_t>& other_tags) {
 }  // namespace
 
 Track read_eufs_track(const std::filesystem::path& file) {
-    EufsCones content = read_eufs_cones(file);
+    const ConeTable content = read_cone_table(file);
     Track track;
     track.name = "eufs_" + file.stem().string();
+    if (!content.guess.empty()) track.warnings.push_back(content.guess);
     track.cones = content.cones;
-    track.left = content.blue;
-    track.right = content.yellow;
-    track.closed = false;
-    require_enough_cones(track, file);
-    track.closed = may_close(track.cones, track.left) || may_close(track.cones, track.right);
-    require_enough_cones(track, file);
-
-    order_boundaries(track, content.orange);
+    EufsBoundaries boundaries(content, file);
+    boundaries.put_into(track);
     if (track.closed) {
         direct_closed_boundaries(track, file);
     } else {
@@ -334,7 +318,7 @@ Track read_eufs_track(const std::filesystem::path& file) {
     } else if (track.closed) {
         start_at_first_pair(track);
     }
-    track = without_doubled_cones(std::move(track));
+    track = without_doubled_cones(std::move(track), boundaries.repeated());
     require_enough_cones(track, file);
     if (!content.other_tags.empty()) track.warnings.push_back(warning_of(content.other_tags));
     return track;

@@ -97,7 +97,7 @@ std::optional<PassedCone> passed(const Track& run, std::size_t cone, std::span<c
             !closed && ((i == 0 && ahead_m < 0.0) || (i + 1 == path.size() && ahead_m > length_m));
         const double on_segment_m = std::clamp(ahead_m, 0.0, length_m);
         const double off_m = (off - on_segment_m / length_m * along).norm();
-        const bool own_side = color == ConeColor::orange || left == (color == ConeColor::blue);
+        const bool own_side = is_orange(color) || left == (color == ConeColor::blue);
         if (own_side && !beyond_ends && off_m <= kMaxConeDistance_m && (!nearest || off_m < nearest->off_m)) {
             nearest = {cone, before_m + on_segment_m, left, off_m};
         }

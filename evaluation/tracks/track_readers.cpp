@@ -1,6 +1,7 @@
 #include "evaluation/tracks/track_readers.hpp"
 
 #include "evaluation/files/input_error.hpp"
+#include "evaluation/tracks/cone_table.hpp"
 #include "evaluation/tracks/track_checks.hpp"
 
 #include <cstdint>
@@ -85,13 +86,6 @@ class YamlFile {
     YAML::Node root_;
 };
 
-ConeColor pacsim_color(const std::string& cone_class) {
-    if (cone_class == "blue") return ConeColor::blue;
-    if (cone_class == "yellow") return ConeColor::yellow;
-    if (cone_class.find("orange") != std::string::npos) return ConeColor::orange;
-    return ConeColor::unknown;
-}
-
 /// Appends the cones of a PacSim lane to the track and returns their indices.
 std::vector<std::size_t> append_pacsim_cones(const YamlFile& yaml, const YAML::Node& list,
                                              const std::string& key, Track& track) {
@@ -104,8 +98,9 @@ std::vector<std::size_t> append_pacsim_cones(const YamlFile& yaml, const YAML::N
         Cone cone;
         cone.id = static_cast<ConeId>(track.cones.size());
         cone.position = yaml.position(yaml.required(item, "position", position_key), position_key, 2, 3);
-        cone.color = pacsim_color(
-            yaml.value<std::string>(yaml.required(item, "class", class_key), class_key, "a class name"));
+        const auto class_name =
+            yaml.value<std::string>(yaml.required(item, "class", class_key), class_key, "a class name");
+        cone.color = color_named(class_name).value_or(ConeColor::unknown);
         indices.push_back(track.cones.size());
         track.cones.push_back(cone);
     }
@@ -114,8 +109,9 @@ std::vector<std::size_t> append_pacsim_cones(const YamlFile& yaml, const YAML::N
 
 }  // namespace
 
-Track without_doubled_cones(Track track) {
+Track without_doubled_cones(Track track, const std::vector<std::size_t>& repeated) {
     std::vector<bool> doubled(track.cones.size(), false);
+    for (const std::size_t index : repeated) doubled[index] = true;
     const auto drop_doubled = [&](std::vector<std::size_t>& boundary) {
         std::vector<std::size_t> kept;
         for (const std::size_t index : boundary) {

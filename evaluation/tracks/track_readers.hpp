@@ -2,7 +2,9 @@
 
 #include "evaluation/tracks/track.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 namespace conelane {
 
@@ -10,8 +12,8 @@ namespace conelane {
 inline constexpr double kDoubledTrackCone_m = 0.3;
 
 /// The track without cones within kDoubledTrackCone_m of an earlier cone of the same boundary: the later one
-/// is removed from the boundary and the map.
-[[nodiscard]] Track without_doubled_cones(Track track);
+/// is removed from the boundary and the map, and so are cones of no boundary that are known to repeat others.
+[[nodiscard]] Track without_doubled_cones(Track track, const std::vector<std::size_t>& repeated = {});
 
 // All readers return the track without doubled cones. They throw InputError if a file is missing, has another
 // format, holds a number that is not finite or beyond 10^7 m, or has a boundary of fewer than three cones
@@ -27,14 +29,15 @@ inline constexpr double kDoubledTrackCone_m = 0.3;
 /// unknown.
 [[nodiscard]] Track read_pacsim_track(const std::filesystem::path& file);
 
-/// An EUFS track: unordered cones of one course, blue ones left and yellow ones right of the driving
-/// direction. Each boundary becomes the shortest tour of its cones that starts at the cone nearest ahead of
-/// `car_start`; without one, at the first left cone of the file and the right one nearest to it. If neither
-/// color can close without an unusually long edge that turns back, the course is open: each boundary becomes
-/// the shortest path of its cones, from end to end. Orange cones join the nearer boundary, except those
-/// beside a cone of its line; cones of other tags join none, and a warning counts them, except `unknown`. Ids
-/// count the cones in file order. It is an error if the colors of a closed course do not bound a ring, or
-/// contradict the direction of `car_start`.
+/// An EUFS track, or another course that read_cone_table reads: unordered cones, blue ones left and yellow
+/// ones right of the driving direction. Cones that cannot belong to their boundary stay in the map as cones
+/// of no boundary, and a warning names them. Each boundary becomes the shortest tour of its cones that starts
+/// at the cone nearest ahead of `car_start`; without one, at the first left cone of the file and the right
+/// one nearest to it. If neither color can close without an unusually long edge that turns back, the course
+/// is open: each boundary becomes the shortest path of its cones, from end to end. Orange cones join the
+/// nearer boundary, except those beside a cone of its line; cones of other tags join none, and a warning
+/// counts them, except `unknown`. Ids count the cones in file order. It is an error if the colors of a closed
+/// course do not bound a ring, or contradict the direction of `car_start`.
 [[nodiscard]] Track read_eufs_track(const std::filesystem::path& file);
 
 }  // namespace conelane

@@ -143,4 +143,14 @@ std::vector<Track> load_tracks(const std::string& spec) {
     fail(spec, fmt::format("'{}' is not one of generated, fsd, pacsim, eufs and ftlog", kind));
 }
 
+std::vector<Track> load_tracks_aloud(const std::string& spec) {
+    std::vector<Track> tracks = load_tracks(spec);
+    for (const Track& track : tracks) {
+        for (const std::string& warning : track.warnings) {
+            fmt::print(stderr, "conelane: {}: {}\n", track.name, warning);
+        }
+    }
+    return tracks;
+}
+
 }  // namespace conelane

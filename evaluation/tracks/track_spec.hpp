@@ -15,4 +15,7 @@ namespace conelane {
 /// Throws InputError, with the SPEC as key if no file is at fault.
 [[nodiscard]] std::vector<Track> load_tracks(const std::string& spec);
 
+/// The same, and prints their warnings, a line each, on standard error.
+[[nodiscard]] std::vector<Track> load_tracks_aloud(const std::string& spec);
+
 }  // namespace conelane

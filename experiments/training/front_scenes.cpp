@@ -229,7 +229,7 @@ class ColorSight {
         // The label is wrong with the probability that the softened color states.
         const bool is_drawn = soft_ && wrong_ > 0.0;
         const double wrong = is_drawn ? uniform(random_, 0.0, std::min(0.5, 2.0 * wrong_)) : wrong_;
-        const bool is_orange = cone.color == ConeColor::orange;
+        const bool is_orange = is_orange(cone.color);
         if (!is_false && !is_orange && one_in(random_, wrong))
             cone.color = cone.color == ConeColor::blue ? ConeColor::yellow : ConeColor::blue;
         if (!soft_) return;

@@ -34,7 +34,8 @@ Json describe(const FrontFigures& figures) {
 /// Without tracks that have no annotated boundaries.
 std::vector<Track> annotated_tracks(const std::vector<std::string>& specs) {
     std::vector<Track> tracks;
-    for (const std::string& spec : specs) std::ranges::move(load_tracks(spec), std::back_inserter(tracks));
+    for (const std::string& spec : specs)
+        std::ranges::move(load_tracks_aloud(spec), std::back_inserter(tracks));
     std::erase_if(tracks, [](const Track& track) { return track.left.empty() || track.right.empty(); });
     return tracks;
 }

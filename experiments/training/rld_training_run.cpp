@@ -15,7 +15,7 @@ RldTrainingRun run_rld_training(const RldTrainingRunOptions& options,
                                 const std::function<void(const RldProgress&)>& report) {
     std::vector<Track> courses;
     for (const std::string& spec : options.tracks)
-        std::ranges::move(load_tracks(spec), std::back_inserter(courses));
+        std::ranges::move(load_tracks_aloud(spec), std::back_inserter(courses));
     std::erase_if(courses, [](const Track& track) { return track.left.empty() || track.right.empty(); });
     RldTrainingRun run;
     run.parameters = options.training.parameters;

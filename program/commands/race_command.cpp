@@ -96,7 +96,7 @@ std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& fi
 
 void add_circuits(std::vector<WeightedCourse>& courses, const std::string& spec,
                   std::optional<Mission> mission, const std::shared_ptr<const WeightsBytes>& weights) {
-    for (const Track& track : load_tracks(spec)) {
+    for (const Track& track : load_tracks_aloud(spec)) {
         if (!track.closed || !track.driven.empty()) {
             fmt::print(stderr, "conelane: {} is left out: not a closed course with boundaries\n", track.name);
             continue;
@@ -124,7 +124,7 @@ std::vector<WeightedCourse> courses_of(const Options& options, std::optional<Mis
         }
         if (options.tracks.empty()) courses.push_back({mission_course(*mission), weights});
         for (const std::string& spec : options.tracks) {
-            for (const Track& track : load_tracks(spec)) {
+            for (const Track& track : load_tracks_aloud(spec)) {
                 courses.push_back({mission_course(*mission, track), weights});
             }
         }

@@ -300,8 +300,23 @@ void add_track(py::module_& module) {
             return fmt::format("<conelane.Track '{}': {} cones>", t.name, t.cones.size());
         });
 
-    module.def("load_tracks", load_tracks, py::arg("spec"), py::call_guard<py::gil_scoped_release>(),
-               R"(load_tracks(spec)
+    module.def(
+        "load_tracks",
+        [](const std::string& spec) {
+            std::vector<Track> tracks;
+            {
+                const py::gil_scoped_release release;
+                tracks = load_tracks(spec);
+            }
+            for (const Track& track : tracks) {
+                for (const std::string& warning : track.warnings) {
+                    const std::string text = track.name + ": " + warning;
+                    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+                }
+            }
+            return tracks;
+        },
+        py::arg("spec"), R"(load_tracks(spec)
 
 Tracks from files of several formats, or generated ones.
 
@@ -319,6 +334,11 @@ Raises
 ------
 ValueError
     Naming the file, or the spec.
+
+Warns
+-----
+UserWarning
+    For each of the `warnings` of a track.
 
 Examples
 --------

@@ -130,6 +130,15 @@ class Tracks(InFolder):
         self.assertEqual((len(track.left), len(track.right), track.closed), (21, 21, True))
         self.assertEqual(set(track.colors[track.left].tolist()), {conelane.Color.blue})
 
+    def test_what_was_guessed_and_left_out_is_a_warning(self):
+        rows = [f"{tag},{r * np.cos(a)},{r * np.sin(a)},0\n" for tag, r in (("blue", 10), ("yellow", 13))
+                for a in np.arange(0, 6.2, 0.3)]
+        file = self.write("oval.csv", "".join(rows) + "yellow,180,0,0\n")
+        with self.assertWarnsRegex(UserWarning, "eufs_oval: no header, column 1 is taken for tag"), \
+                self.assertWarnsRegex(UserWarning, "left out of the boundaries: the yellow cone of line 43"):
+            track, = conelane.load_tracks(f"eufs:{file}")
+        self.assertEqual((len(track.cones), len(track.right), len(track.warnings)), (43, 21, 2))
+
     def test_faults(self):
         for spec in ("generated:nothing", "eufs:nowhere.csv", "what"):
             with self.subTest(spec), self.assertRaises(ValueError):

@@ -72,6 +72,38 @@ inline DrivenCourse oval(int laps = 1, double spacing_m = 3.0) {
     return course;
 }
 
+/// A course from a gate of orange cones at the origin to another one 60 m on, behind a bend to the left;
+/// cones stand up to `beyond_m` behind it.
+inline DrivenCourse from_gate_to_gate(double beyond_m = 0.0) {
+    constexpr double kStraight_m = 20.0;
+    constexpr double kRadius_m = 15.0;
+    DrivenCourse course;
+    course.mission = Mission::autocross;
+    course.finish_m = 60.0;
+    course.pose = [](double s_m) -> Pose {
+        if (s_m <= kStraight_m) return {{s_m, 0.0}, 0.0};
+        const double a = std::min(1.0, (s_m - kStraight_m) / kRadius_m);
+        const double rest_m = s_m - kStraight_m - a * kRadius_m;
+        const Point bent(kStraight_m + kRadius_m * std::sin(a), kRadius_m * (1.0 - std::cos(a)));
+        return {bent + rest_m * Point(std::cos(a), std::sin(a)), a};
+    };
+    for (double s_m = -8.0; s_m <= course.finish_m + beyond_m; s_m += 4.0) {
+        const bool gate = s_m == 0.0 || s_m == course.finish_m;
+        for (const double off_m : gate ? std::vector{-0.25, 0.25} : std::vector{0.0}) {
+            const Pose at = course.pose(s_m + off_m);
+            const Point left(-std::sin(at.yaw_rad), std::cos(at.yaw_rad));
+            for (const double side : {1.0, -1.0}) {
+                const ConeColor color = gate         ? ConeColor::orange
+                                        : side > 0.0 ? ConeColor::blue
+                                                     : ConeColor::yellow;
+                course.cones.push_back(
+                    {static_cast<ConeId>(course.cones.size()), at.position + side * 1.75 * left, color});
+            }
+        }
+    }
+    return course;
+}
+
 /// Acceleration or skidpad as a race drives it.
 inline DrivenCourse mission_course(const experiments::RaceCourse& race) {
     DrivenCourse course;

@@ -134,7 +134,7 @@ class Laps : public testing::Test {
         return counted;
     }
     ConeMemory cones_;
-    LapCounter counter_{CourseSettings{}};
+    LapCounter counter_{CourseSettings{}, 3};
 };
 
 TEST_F(Laps, AreCountedWhereTheRunBegan) {

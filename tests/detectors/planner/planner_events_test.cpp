@@ -131,6 +131,43 @@ TEST(PlannerEvent, AnAutocrossEndsAfterOneLap) {
     EXPECT_EQ(told.last.lap, 1);
 }
 
+TEST(PlannerEvent, AnAutocrossEndsAtAFinishElsewhere) {
+    for (const double beyond_m : {0.0, 20.0}) {
+        for (const double range_m : {12.0, 20.0}) {
+            SCOPED_TRACE(testing::Message() << beyond_m << " m beyond, range " << range_m);
+            const DrivenCourse course = tests::from_gate_to_gate(beyond_m);
+            const auto planner = make_planner({.mission = Mission::autocross});
+            const Sight sight{.range_m = range_m, .with_color = true, .noise_m = 0.05};
+            const Told told = drive(*planner, course, course.finish_m + beyond_m + 3.0, sight, -6.0);
+            EXPECT_LE(told.without_path, 1) << "there is a way across the line";
+            EXPECT_LT(told.farthest_m, 0.5);
+            ASSERT_TRUE(told.stop_m);
+            EXPECT_GE(*told.stop_m, course.finish_m - 0.3);
+            EXPECT_LT(*told.stop_m, course.finish_m + beyond_m + 2.0) << "the course ends";
+            EXPECT_EQ(told.last.state, PlanState::finished);
+            EXPECT_EQ(told.last.lap, 1);
+            EXPECT_GT(told.last.lane.length_m, 4.0) << "to come to rest on";
+            EXPECT_LE(told.last.lane.length_m, 30.0 - beyond_m);
+        }
+    }
+}
+
+// Nothing tells a second gate of a circuit from a finish but what is behind it.
+TEST(PlannerEvent, AGateThatIsPassedOnACircuitEndsNothing) {
+    DrivenCourse course = tests::oval(1);
+    for (Cone& cone : course.cones) {
+        if (cone.color == ConeColor::orange)
+            cone.color = cone.position.y() > 0.0 ? ConeColor::blue : ConeColor::yellow;
+        if (std::abs(cone.position.x()) < 1.6 && cone.position.y() > 8.0) cone.color = ConeColor::orange;
+    }
+    ASSERT_GE(std::ranges::count(course.cones, ConeColor::orange, &Cone::color), 2);
+    const auto planner = make_planner({.mission = Mission::autocross});
+    const Told told = drive(*planner, course, course.finish_m + 4.0, {.with_color = true});
+    ASSERT_TRUE(told.stop_m);
+    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
+    EXPECT_LT(*told.stop_m, course.finish_m + 4.0);
+}
+
 TEST(PlannerEvent, NoiseWithoutIdsLeavesTheLapsAsTheyAre) {
     const DrivenCourse course = tests::oval(2);
     const auto planner = make_planner({.mission = Mission::trackdrive, .laps = 2});
