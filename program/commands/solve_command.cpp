@@ -161,7 +161,7 @@ void add_solve_command(CLI::App& program) {
     command
         .add_option("--solver", options->solver,
                     "see `conelane solvers`; or exec:NAME=COMMAND, a program that solves MPS or LP files "
-                    "(docs/solvers-from-outside.md)")
+                    "(docs/from-outside.md)")
         ->capture_default_str();
     command.add_flag(
         "--all-rows", options->all_rows,
