@@ -22,10 +22,15 @@ def output_of(*command):
 
 
 def commands_of(program, *path):
-    """The names of sub-commands, in the order of the help."""
-    text = output_of(program, *path, "--help")
-    _, found, below = text.partition("\nSubcommands:\n")
-    return re.findall(r"^  (\S+)", below, flags=re.M) if found else []
+    """The names of sub-commands, in the order of the help, whatever its groups are called."""
+    text, group, names = output_of(program, *path, "--help"), "", []
+    for line in text.split("\n"):
+        heading = re.fullmatch(r"(\S.*):", line)
+        group = heading.group(1) if heading else group
+        entry = re.match(r"  ([a-z]\S*)", line)
+        if entry and group and group not in ("Options", "Positionals"):
+            names.append(entry.group(1))
+    return names
 
 
 def undescribed(command, text):
