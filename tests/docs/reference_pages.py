@@ -34,13 +34,15 @@ def commands_of(program, *path):
 
 
 def undescribed(command, text):
-    """Options of a help text without a description, and the command itself."""
+    """The command itself and its options, if they have no description. Descriptions begin in column 30, in a group 32; below long options."""
     lines = text.strip().split("\n")
     if lines[0].startswith("Usage:"):
         yield command
-    for line, below in zip(lines, lines[1:] + [""]):
-        if re.match(r"  \S", line) and not re.match(r"  \S.*?\s{2,}\S", line) and not re.match(r" {10,}\S", below):
-            yield f"{command} {line.strip()}"
+    for entry in re.findall(r"^ {2,4}-.*(?:\n {6,}.*)*", "\n".join(lines), flags=re.M):
+        option, *below = entry.split("\n")
+        wrapped = any(re.match(r" {6}\S", line) for line in below)
+        if not any(re.match(r" {30,32}\S", line) for line in below) and (wrapped or not re.match(r".{29} \S|    .{27} \S", option)):
+            yield f"{command} {option.strip()}"
 
 
 def commands_page(program, missing):
@@ -141,8 +143,8 @@ def main():
             stream.write(page.rstrip("\n") + "\n")
         print(f"wrote {os.path.join(folder, name)}")
     missing += [] if "\n## compare\n" in pages["commands.md"] else ["compare: the help lists no commands"]
-    planted = "Usage: x\n\nOptions:\n  --a TEXT\n  --b FLOAT:POSITIVE=400\n                              below\n  --c  beside"
-    missing += [] if list(undescribed("x", planted)) == ["x", "x --a TEXT"] else ["planted options are not found"]
+    planted = f"Usage: x\n\nOptions:\n  --a TEXT:{{tight,paper}}=tight\n  --b FLOAT:POSITIVE=400\n{'below':>35}\n{'  --c':30}beside"
+    missing += [] if list(undescribed("x", planted)) == ["x", "x --a TEXT:{tight,paper}=tight"] else ["planted options are not found"]
     print("".join(f"no description: {name}\n" for name in missing), end="")
     return 1 if missing else 0
 
