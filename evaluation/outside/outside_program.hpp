@@ -26,7 +26,7 @@ struct OutsideLimits {
 };
 
 /// A program that answers scene after scene over standard input and output (see
-/// docs/methods-from-outside.md). Each scene gets an answer: one of status error if the program crashed, was
+/// docs/from-outside.md). Each scene gets an answer: one of status error if the program crashed, was
 /// late, wrote an invalid line or named unknown cones. It is then started again for the next scene.
 ///
 /// After each start the current scene is asked once without timing, so no latency includes the loading of

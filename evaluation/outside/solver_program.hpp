@@ -36,7 +36,7 @@ struct SolverQuestion {
     std::optional<double> cutoff{};  ///< only points with a lower objective are needed
 };
 
-/// A program of others that solves binary programs (docs/solvers-from-outside.md). COMMAND is run by
+/// A program of others that solves binary programs (docs/from-outside.md). COMMAND is run by
 /// `/bin/sh -c`:
 /// - where it has {mps} or {lp}, once for each program, with its placeholders replaced: {mps} or {lp} (the
 ///   program's file), {sol} (the solution file to write), {limit_s}, {limit_whole_s} (rounded up),

@@ -6,7 +6,7 @@
 #include <vector>
 
 // Measures of solvers on the same runs, as benchmarks of optimisation print them. Definitions with their
-// sources: docs/benchmark-measures.md.
+// sources: docs/measures.md.
 namespace conelane {
 
 /// One run of a solver: an instance, in one order of its rows and columns.

@@ -14,7 +14,7 @@ namespace conelane::experiments {
 
 /// Summary of the runs of one backend at one size and condition. A run is a scene in one order of its cones,
 /// rows and columns. It is solved if its optimum, or that there is none, was proven within the limit, the
-/// checker passes it and no other backend refutes it. Definitions: docs/benchmark-measures.md.
+/// checker passes it and no other backend refutes it. Definitions: docs/measures.md.
 struct BackendSummary {
     std::size_t size = 0;
     std::string condition;  ///< empty: all scenes

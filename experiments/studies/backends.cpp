@@ -242,7 +242,7 @@ class BackendsStudy : public Study {
                "passes the independent checker or counts as an error; a claim that another backend's lane "
                "graph refutes is one too. A warm start is the last lane graph of the lap, its cones found "
                "again by id. Between blocks, a size of a backend each, a reference problem is timed. "
-               "Measures: docs/benchmark-measures.md."}) {}
+               "Measures: docs/measures.md."}) {}
 
     void add_options(CLI::App& command) override {
         add_input_options(command, input_);

@@ -256,13 +256,6 @@ def certainty_table(figures):
     return table(["at 0 % / 50 % false positives", "off", "sure", "usable if sure", "trusted", "right if trusted"], lines)
 
 
-def peer_table(figures):
-    return table(columns("usable / IoU, %"),
-                 [[label] + [both(figures.row(None, method, condition, rate, 30.0)) for condition in CONDITIONS for rate in RATES]
-                  for method, label in (("ft-fsd-path-planning", "ft-fsd-path-planning, sorting of cones"), ("front", "`front`"))
-                  if figures.row(None, method, "paper", 0.0, 30.0)])
-
-
 def certainty_in_words(figures):
     """Over all rates and both ranges, weighted by scenes, what is said of sure lanes by their number."""
     def over(condition, key, weight=None):
@@ -358,7 +351,6 @@ TABLES = {
     "errors": error_table,
     "certainty of front": certainty_table,
     "certainty of front in words": certainty_in_words,
-    "front and ft-fsd-path-planning": peer_table,
     "latency": latency_table,
     "races": race_table,
     "races by measure": race_measure_table,

@@ -45,7 +45,7 @@ def backend_rows(lines):
 
 
 def size_rows(lines):
-    """The measures that the study itself prints, see docs/benchmark-measures.md."""
+    """The measures that the study itself prints, see docs/measures.md."""
     versions = {line["backend"]: line.get("version", "") for line in lines if line.get("row") == "block"}
     return [{"table": "sizes", "backend": line["backend"], "nearest": line["nearest"], "version": versions.get(line["backend"], ""),
              "scenes": line["scenes"], "runs": line["runs"], "solved": line["solved"], "errors": line["errors"],

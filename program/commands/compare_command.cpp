@@ -55,9 +55,9 @@ void add_options(CLI::App& command, CompareOptions& options) {
     command
         .add_option("--methods", options.detectors,
                     "see `conelane methods`, separated by commas; exec:NAME=COMMAND asks any program and "
-                    "takes the rest of its argument; lanes:NAME=FILE scores a finished lanes file "
-                    "(docs/methods-from-outside.md); solver:NAME=COMMAND is RLD by any solver of MPS or LP "
-                    "files and takes the rest, too (docs/solvers-from-outside.md)")
+                    "takes the rest of its argument; lanes:NAME=FILE scores a finished lanes file; "
+                    "solver:NAME=COMMAND is RLD by any solver of MPS or LP files and takes the rest, too "
+                    "(docs/from-outside.md)")
         ->capture_default_str();
     add_scene_options(command, comparison.scenes);
     comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;

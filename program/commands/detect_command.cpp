@@ -178,9 +178,8 @@ void add_detect_command(CLI::App& program) {
     auto options = std::make_shared<DetectOptions>();
     options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command
-        .add_option(
-            "--method", options->detector,
-            "see `conelane methods`, or exec:NAME=COMMAND for any program (docs/methods-from-outside.md)")
+        .add_option("--method", options->detector,
+                    "see `conelane methods`, or exec:NAME=COMMAND for any program (docs/from-outside.md)")
         ->required();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; - reads standard input line by line")
         ->required();

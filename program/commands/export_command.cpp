@@ -43,7 +43,9 @@ struct ProgramSource {
 void add_program_options(CLI::App& command, ProgramSource& source) {
     command.add_option("--scenes", source.scenes, "*.scenes.jsonl")->required();
     command.add_option("--id", source.id, "id of the scene")->required();
-    command.add_option("--formulation", source.formulation)
+    command
+        .add_option("--formulation", source.formulation,
+                    "rows and columns of the program: tight, or paper as printed")
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");

@@ -123,7 +123,7 @@ void add_score_command(CLI::App& program) {
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more");
     command.add_option("--methods", options->detectors,
                        "lanes:NAME=FILE: answers of another program, scored under that name "
-                       "(docs/methods-from-outside.md)");
+                       "(docs/from-outside.md)");
     command.add_flag("--wide", options->wide,
                      "the table of every measure, with the papers' figures below; some 270 columns");
     add_output_option(command, "--json", options->json, "write the rows as JSON lines too");

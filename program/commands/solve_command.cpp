@@ -152,13 +152,15 @@ void add_solve_command(CLI::App& program) {
     command
         .add_option("--solver", options->solver,
                     "see `conelane solvers`; or exec:NAME=COMMAND, a program that solves MPS or LP files "
-                    "(docs/solvers-from-outside.md)")
+                    "(docs/from-outside.md)")
         ->capture_default_str();
     command.add_flag(
         "--all-rows", options->all_rows,
         "a program from outside gets one file with all rows (no cycles and the pairing as a flow) and is "
         "asked once; without it, rows that its point violates are added and it is asked again");
-    command.add_option("--formulation", options->formulation)
+    command
+        .add_option("--formulation", options->formulation,
+                    "the program, for solvers that use one: tight, or paper as printed")
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();

@@ -1,8 +1,7 @@
-"""reference_pages.py ROOT PROGRAM FIELDS [--write]: docs/commands.md from the --help of the program, docs/parameters.md from the parameter
-fields of the library (the program FIELDS, parameter_fields) and the structs of its headers. Without --write it prints what differs and
-ends by exit code 1."""
+"""reference_pages.py ROOT PROGRAM FIELDS FOLDER: FOLDER/commands.md from the --help of the program, FOLDER/parameters.md from the
+parameter fields of the library (the program FIELDS, parameter_fields) and the structs of its headers. Ends by exit code 1, with a line
+for each, if a command, an option or a parameter has no description."""
 
-import difflib
 import os
 import re
 import subprocess
@@ -23,21 +22,41 @@ def output_of(*command):
 
 
 def commands_of(program, *path):
-    """The names of sub-commands, in the order of the help."""
-    text = output_of(program, *path, "--help")
-    _, found, below = text.partition("\nSubcommands:\n")
-    return re.findall(r"^  (\S+)", below, flags=re.M) if found else []
+    """The names of sub-commands, in the order of the help, whatever its groups are called."""
+    text, group, names = output_of(program, *path, "--help"), "", []
+    for line in text.split("\n"):
+        heading = re.fullmatch(r"(\S.*):", line)
+        group = heading.group(1) if heading else group
+        entry = re.match(r"  ([a-z]\S*)", line)
+        if entry and group and group not in ("Options", "Positionals"):
+            names.append(entry.group(1))
+    return names
 
 
-def commands_page(program):
-    lines = ["# Commands of the program", "",
-             "Every command with its options: type, range and default. Made by `tests/docs/reference_pages --write` from `conelane COMMAND --help`; a test",
-             "compares them. What each command is for: [program.md](program.md). `FLOAT=400` means: a number, 400 without the option.", ""]
+def undescribed(command, text):
+    """The command itself and its options, if they have no description. Descriptions begin in column 30, in a group 32; below long options."""
+    lines = text.strip().split("\n")
+    if lines[0].startswith("Usage:"):
+        yield command
+    for entry in re.findall(r"^ {2,4}-.*(?:\n {6,}.*)*", "\n".join(lines), flags=re.M):
+        option, *below = entry.split("\n")
+        wrapped = any(re.match(r" {6}\S", line) for line in below)
+        if not any(re.match(r" {30,32}\S", line) for line in below) and (wrapped or not re.match(r".{29} \S|    .{27} \S", option)):
+            yield f"{command} {option.strip()}"
+
+
+def commands_page(program, missing):
+    lines = ["# Commands of the program", "", "Every command with its options: type, range and default, made from `conelane COMMAND --help`.", ""]
+
+    def add(level, *path):
+        text = output_of(program, *path, "--help")
+        missing.extend(undescribed(" ".join(path), text))
+        lines.extend([f"{level} {' '.join(path)}", "", "```text", text.strip(), "```", ""])
+
     for name in commands_of(program):
-        below = commands_of(program, name)
-        lines += [f"## {name}", "", "```text", output_of(program, name, "--help").strip(), "```", ""]
-        for other in below:
-            lines += [f"### {name} {other}", "", "```text", output_of(program, name, other, "--help").strip(), "```", ""]
+        add("##", name)
+        for other in commands_of(program, name):
+            add("###", name, other)
     return "\n".join(line.rstrip() for line in "\n".join(lines).split("\n"))
 
 
@@ -72,7 +91,8 @@ def members_of(root, struct, header):
     return members
 
 
-def parameters_page(root, fields):
+def parameters_page(root, folder, fields, missing):
+    sources = os.path.relpath(root, folder)
     groups = {}
     for line in output_of(fields).splitlines():
         group, *row = line.split("\t")
@@ -82,12 +102,12 @@ def parameters_page(root, fields):
     def number_table(group):
         rows = ["| parameter | type | default | range | unit | meaning |", "| --- | --- | --- | --- | --- | --- |"]
         for key, value, low, high, unit, meaning in groups[group]:
+            missing.extend([] if meaning else [f"{group} {key}"])
             rows.append(f"| `{key}` | number | {value} | {low} to {high} | {'–' if unit == '1' else unit} | {cell(meaning)} |")
         return rows
 
-    lines = ["# Parameters", "", "Type, range, default and unit of every parameter. Made by `tests/docs/reference_pages --write` from the code; a test compares them.",
-             "Options of the program: [commands.md](commands.md).", "", "## RLD", "",
-             "The symbols of the RLD paper ([formulation.md](../model/formulation.md)). The keys are those of a [parameter file](formats.md#rld-parameters)", "and of Python's `parameters`.", ""]
+    lines = ["# Parameters", "", "Type, range, default and unit of every parameter, made from the code. Options of the program: [commands.md](commands.md).", "", "## RLD", "",
+             f"The symbols of the RLD paper ([formulation.md]({sources}/model/formulation.md)). The keys are those of a [parameter file]({sources}/docs/formats.md#rld-parameters)", "and of Python's `parameters`.", ""]
     lines += number_table("rld")
     lines += ["| `pairing` | name | near_far | near_far, paper | – | which ends a path may join |", "", "Extras, off by default: costs of colours, confidences and the shape of the lane.", ""]
     lines += number_table("rld extra")
@@ -105,34 +125,28 @@ def parameters_page(root, fields):
         lines += ["", f"## {name}", "", f"Tuned by `conelane tune-method {name}`; the default is the shipped value.", ""] + number_table(name)
     lines += ["", "## Options of the C++ library", "", "Units are in the names: `_ms`, `_m`, `_s`. Python has the same names as keyword arguments; the values of `drivable` are given to `Planner` itself.", ""]
     for struct, header, what in STRUCTS:
-        lines += [f"### {struct}", "", f"[{os.path.basename(header)}](../{header}): {what}.", "", "| option | type | default | meaning |", "| --- | --- | --- | --- |"]
+        lines += [f"### {struct}", "", f"[{os.path.basename(header)}]({sources}/{header}): {what}.", "", "| option | type | default | meaning |", "| --- | --- | --- | --- |"]
         for kind, name, default, meaning in members_of(root, struct, header):
+            missing.extend([] if meaning else [f"{struct}::{name}"])
             lines.append(f"| `{name}` | `{cell(kind)}` | `{cell(default)}` | {cell(meaning)} |")
         lines.append("")
     return "\n".join(lines)
 
 
 def main():
-    root, program, fields, *options = sys.argv[1:]
-    differ = False
-    for name, page in (("commands.md", commands_page(program)), ("parameters.md", parameters_page(root, fields))):
-        path = os.path.join(root, "docs", name)
-        page = page.rstrip("\n") + "\n"
-        stored = ""
-        if os.path.exists(path):
-            with open(path, encoding="utf-8") as stream:
-                stored = stream.read()
-        if stored == page:
-            continue
-        if "--write" in options:
-            with open(path, "w", encoding="utf-8") as stream:
-                stream.write(page)
-            print(f"wrote docs/{name}")
-        else:
-            differ = True
-            print("".join(list(difflib.unified_diff(stored.splitlines(True), page.splitlines(True), f"docs/{name}", "the code"))[:60]))
-            print(f"docs/{name} is not up to date: tests/docs/reference_pages --write")
-    return 1 if differ else 0
+    root, program, fields, folder = sys.argv[1:]
+    missing = []
+    pages = {"commands.md": commands_page(program, missing), "parameters.md": parameters_page(root, folder, fields, missing)}
+    os.makedirs(folder, exist_ok=True)
+    for name, page in pages.items():
+        with open(os.path.join(folder, name), "w", encoding="utf-8") as stream:
+            stream.write(page.rstrip("\n") + "\n")
+        print(f"wrote {os.path.join(folder, name)}")
+    missing += [] if "\n## compare\n" in pages["commands.md"] else ["compare: the help lists no commands"]
+    planted = f"Usage: x\n\nOptions:\n  --a TEXT:{{tight,paper}}=tight\n  --b FLOAT:POSITIVE=400\n{'below':>35}\n{'  --c':30}beside"
+    missing += [] if list(undescribed("x", planted)) == ["x", "x --a TEXT:{tight,paper}=tight"] else ["planted options are not found"]
+    print("".join(f"no description: {name}\n" for name in missing), end="")
+    return 1 if missing else 0
 
 
 if __name__ == "__main__":

@@ -493,7 +493,7 @@ TEST_F(OutsideDetectors, AWrongSolverIsAnErrorAndNeverALane) {
     expect_refused("sweep --out r2 --methods 'solver:a=run {mps} {lp}'", {"{lp}"});
 }
 
-/// The two programs in docs/methods-from-outside.md.
+/// The two programs in docs/from-outside.md.
 TEST_F(OutsideDetectors, TheExampleInCppAnswersAsClc) {
     run_well(std::string(kCompare) + "r --methods clc exec:clc-stream=" + clc_stream());
     EXPECT_EQ(only_lanes(lanes("r/clc-stream")), only_lanes(lanes("r/clc")));
