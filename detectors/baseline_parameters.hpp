@@ -6,7 +6,7 @@
 namespace conelane {
 
 /// The shipped parameters of delaunay-beam and astar-lane, from parameters/NAME.json.
-/// parameters/NAME.record.json has the scenes on which `conelane tune-method` found them.
+/// parameters/NAME.record.json has the scenes on which `conelane tune --method` found them.
 [[nodiscard]] DelaunayBeamParameters tuned_delaunay_beam_parameters();
 [[nodiscard]] AstarLaneParameters tuned_astar_lane_parameters();
 

@@ -69,7 +69,7 @@ void add_options(CLI::App& command, CompareOptions& options) {
     add_parameter_options(command, options.parameters, "the defaults");
     command.add_option_function<std::string>(
         "--shard", [&comparison](const std::string& text) { comparison.shard = parse_shard(text); },
-        "I/N: every N-th lap from the I-th on, I from 0; join them by `conelane merge`");
+        "I/N: every N-th lap from the I-th on, I from 0; join them by `conelane compare --merge`");
     command
         .add_option("--out", options.directory,
                     "directory of the results; a run that was stopped there resumes")

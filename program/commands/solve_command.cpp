@@ -57,7 +57,7 @@ ChosenSolver choose(const Options& options) {
         throw InvalidInput("--all-rows", "is for programs from outside: --solver exec:NAME=COMMAND");
     const RldSolverEntry* entry = find_rld_solver(options.solver);
     if (entry == nullptr) {
-        throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane solvers`");
+        throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane methods --solvers`");
     }
     return {entry->make(formulation), options.solver, options.formulation};
 }
@@ -151,7 +151,7 @@ void add_solve_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     command
         .add_option("--solver", options->solver,
-                    "see `conelane solvers`; or exec:NAME=COMMAND, a program that solves MPS or LP files "
+                    "see `conelane methods --solvers`; or exec:NAME=COMMAND, a program that solves MPS or LP files "
                     "(docs/from-outside.md)")
         ->capture_default_str();
     command.add_flag(

@@ -5,7 +5,7 @@ Protocol: mean and one standard deviation of all solves at each size, from the s
 zero ends at a tenth of the mean.
 Source: RLD paper, IV-A, Fig. 5: Mosek, its own machine and its own scenes.
 Published: mean 71.79 ms at n = 12; under 80 ms on average below 14 cones.
-Command: conelane sweep --out RESULTS/sweep
+Command: conelane compare --by-size --out RESULTS/sweep
 """
 
 import numpy as np

@@ -4,7 +4,7 @@ Claim: Which method is ahead at which cone-set size, and how does its time grow?
 Protocol: every method on the n nearest cones ahead, the same scenes at every size. If several names are listed, zero \
 is within the 95 % interval of the paired difference from the best (tracks resampled). Fastest: least geometric mean.
 Source: this project; the sizes are those of the RLD paper's Fig. 5 and beyond.
-Command: conelane sweep --out RESULTS/sweep
+Command: conelane compare --by-size --out RESULTS/sweep
 """
 
 import numpy as np

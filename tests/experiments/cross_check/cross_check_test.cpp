@@ -235,7 +235,7 @@ class CrossCheckRun : public ProgramFixture {
     }
 };
 
-// The part that runs in every build; `conelane cross-check --cases 100000` runs all.
+// The part that runs in every build; `conelane study cross-check --cases 100000` runs all.
 TEST_F(CrossCheckRun, AllExactSolversAgree) {
     const CrossCheckSummary summary = cross_check(options(120), path("cases"));
     EXPECT_EQ(summary.cases, 120U);

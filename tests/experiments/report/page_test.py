@@ -624,7 +624,7 @@ class ReportPage(unittest.TestCase):
                               "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
                               "there is no benchmarks.json.", "there is no race/race.json."):
                 self.assertIn(complaint, text)
-            self.assertIn("<code>conelane sweep --out RESULTS/sweep</code>", text)
+            self.assertIn("<code>conelane compare --by-size --out RESULTS/sweep</code>", text)
             self.assertEqual(Page(text).wrong, [])
 
 

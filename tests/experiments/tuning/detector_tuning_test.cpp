@@ -1,4 +1,4 @@
-// `conelane tune-method`: parameters of detectors that are not RLD, found by random search.
+// `conelane tune --method`: parameters of detectors that are not RLD, found by random search.
 
 #include "experiments/tuning/detector_tuning.hpp"
 
