@@ -229,16 +229,16 @@ class ColorSight {
         // The label is wrong with the probability that the softened color states.
         const bool is_drawn = soft_ && wrong_ > 0.0;
         const double wrong = is_drawn ? uniform(random_, 0.0, std::min(0.5, 2.0 * wrong_)) : wrong_;
-        const bool is_orange = is_orange(cone.color);
-        if (!is_false && !is_orange && one_in(random_, wrong))
+        const bool is_gate = is_orange(cone.color);
+        if (!is_false && !is_gate && one_in(random_, wrong))
             cone.color = cone.color == ConeColor::blue ? ConeColor::yellow : ConeColor::blue;
         if (!soft_) return;
         ColorProbabilities soft;
         soft.unknown = uniform(random_, 0.0, 0.2);
         const double known = 1.0 - soft.unknown;
-        soft.blue = known * (cone.color == ConeColor::blue ? 1.0 - wrong : is_orange ? 0.0 : wrong);
-        soft.yellow = known * (cone.color == ConeColor::yellow ? 1.0 - wrong : is_orange ? 0.0 : wrong);
-        if (is_orange) (one_in(random_, 0.5) ? soft.orange : soft.big_orange) = known;
+        soft.blue = known * (cone.color == ConeColor::blue ? 1.0 - wrong : is_gate ? 0.0 : wrong);
+        soft.yellow = known * (cone.color == ConeColor::yellow ? 1.0 - wrong : is_gate ? 0.0 : wrong);
+        if (is_gate) (one_in(random_, 0.5) ? soft.orange : soft.big_orange) = known;
         cone.color_probabilities = soft;
     }
 
