@@ -49,7 +49,7 @@ addEventListener("load", async () => {
     }
     const narrow = [...document.querySelectorAll("#methods figure")].filter((one) => one.getBoundingClientRect().width < 150);
     check(narrow.length === 0, "the pictures of the methods have room");
-    check(document.querySelector("#cone-lane svg").getBoundingClientRect().height > 80, "what a cone lane is, is shown");
+    check(document.querySelector("#cone-lane canvas").getBoundingClientRect().height > 80, "what a cone lane is, is shown");
     const sorter = document.querySelector("#headline thead button");
     sorter.focus();
     check(document.activeElement === sorter, "a column's title takes the focus of the keyboard");
@@ -91,7 +91,8 @@ addEventListener("load", async () => {
     slider.dispatchEvent(new Event("input"));
     check(box.dataset.scene.startsWith("circle/"), "the chosen track is shown");
 
-    const { frames, marks } = JSON.parse(document.getElementById("scene-data").textContent);
+    const { frames } = JSON.parse(document.getElementById("scene-data").textContent);
+    const marks = JSON.parse(document.getElementById("marks").textContent);
     const answers = frames[box.dataset.scene].a; // see with_uncertain_answers
     const lines = () => strokes.lines.filter((line) => line.canvas === "view-scene");
     const inferred = lines().filter((line) => line.dash === marks.inferred.dash.join());
