@@ -1,16 +1,14 @@
 """An experiment on the page. It is a function (results, published) that gives its tables and figures or raises Missing, and
-its docstring says what it is about:
+its docstring says what it is about, a part after the other:
 
     Title
-
     Claim: what is to be shown; of an experiment of a paper, what the paper claims.
     Protocol: how it is measured.
     Source: the paper and its figure, or this project.
     Published: what the paper prints, for those that reproduce one.
     Command: what makes the results that it is drawn from.
 
-An experiment of a paper also has a verdict: (method, whether the claim holds of it here, the figures it is judged by) of each
-method that the claim is about."""
+An experiment of a paper is also judged: whether the claim holds here."""
 
 import re
 from html import escape

@@ -39,15 +39,13 @@ def _table_by_rate(name, results, published, samples, shares, columns, note=""):
 @Experiment
 def clc_table_1(results, published):
     """CLC Table I: outcomes of the scenes
-
     Claim: Up to 30 % false positives, at least 99 % of lanes are right for 20 m.
     Protocol: every method on what it sees, all ranges together, as in the paper. The categories are the paper's;
     `none` is separate here.
     Source: CLC paper, VIII-D, Table I: 1964 poses over 9 recorded tracks, 30 m and 50 m.
     Published: success 99.4 / 99.2 / 99.3 / 95.0 % and mean IoU 96.9 / 96.0 / 93.2 / 79.5 % at 0 / 10 / 30 / 50 % false
     positives. The text of VIII-D says 2.6 % critical failures at 50 %, the table 5.0 %; the table is used here.
-    Command: conelane compare --full --tracks fsd:DIR --out RESULTS
-    """
+    Command: conelane compare --full --tracks fsd:DIR --out RESULTS"""
     def shares(part):
         return {key: np.mean(part.category == key) for key in CATEGORIES} | {"success": part.success.mean(), "mean_iou": part.mean_iou}
     return _table_by_rate("clc-table-1", results, published, results.samples, shares,
@@ -68,13 +66,11 @@ def _enumerating(results):
 @Experiment
 def clc_table_2(results, published):
     """CLC Table II: complete enumerations
-
     Claim: Without false positives the search is complete in nearly half of the scenes.
     Protocol: methods that enumerate, all ranges together. The best candidate's IoU is known where candidates were kept.
     Source: CLC paper, VIII-E, Table II.
     Published: 46.4 / 34.4 / 13.4 / 2.3 % complete at 0 / 10 / 30 / 50 % false positives.
-    Command: conelane compare --methods clc --candidates --out RESULTS/candidates
-    """
+    Command: conelane compare --methods clc --candidates --out RESULTS/candidates"""
     samples = _enumerating(results)
     if not samples:
         raise Missing("no method enumerates.")
@@ -97,14 +93,12 @@ def _as_often_complete(sample, published):
 @Experiment
 def clc_fig_9(results, published):
     """CLC Fig. 9: where lanes diverge
-
     Claim: Most wrong lanes leave the track far from the car.
     Protocol: distance along the boundary up to which a diverging lane is right, rates up to 30 %, bins of 5 m, in per
     cent of all scenes. Left of the line a divergence is critical.
     Source: CLC paper, VIII-D, Fig. 9.
     Published: a picture only; its sums are in Table I: 2.2 to 4.1 % diverge from 20 m on, 0.6 to 0.8 % before.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     samples = [sample for sample in _moderate(results) if sample.has("divergence")]
     if not samples:
         raise Missing("no lane diverges, or no annotated boundary was given.")
@@ -139,14 +133,12 @@ def _with_candidates(results):
 @Experiment
 def clc_fig_11(results, published):
     """CLC Fig. 11: iterations to the first good candidate
-
     Claim: A candidate of IoU ≥ 98 % is enumerated early, in nearly every scene.
     Protocol: share of scenes, rates up to 30 %, in which such a candidate was enumerated up to this iteration. A
     plateau below 100 %: in the other scenes, none is found within the limit.
     Source: CLC paper, VIII-E, Fig. 11.
     Published: most within 500 iterations; 5 % of scenes without one after 2500; a plateau up to 20000.
-    Command: conelane compare --methods clc --candidates --out RESULTS/candidates
-    """
+    Command: conelane compare --methods clc --candidates --out RESULTS/candidates"""
     def points(sample):
         iterations = np.sort(sample.known("first_near_iteration").first_near_iteration)
         places = np.unique(np.linspace(0, len(iterations) - 1, 200).astype(int))
@@ -169,14 +161,12 @@ def _good_candidates_come_early(sample, published):
 @Experiment
 def clc_fig_12(results, published):
     """CLC Fig. 12: lane lengths
-
     Claim: Lanes are as long as the ground truth.
     Protocol: filled: the ground truth (12a). Lines: lanes that do not diverge (12b). Rates up to 30 %, bins of 5 m, in
     per cent of all scenes.
     Source: CLC paper, VIII-D, Fig. 12.
     Published: a picture; lanes of up to 100 m, some of 150 m.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     samples = [sample for sample in _moderate(results) if len(sample)]
     if not samples:
         raise Missing("there is no scene with a rate up to 30 %.")
@@ -207,14 +197,12 @@ def _iterating(results):
 @Experiment
 def clc_fig_15(results, published):
     """CLC Fig. 15: latency of the graph search
-
     Claim: The graph search is fast enough for a car, even in its slowest scene.
     Protocol: methods that enumerate, all rates and ranges. Quartiles and median; whiskers to the 1st and 99th
     percentile; the tick is the maximum.
     Source: CLC paper, VIII-G, Fig. 15: Intel i7-12700K.
     Published: median below 5 ms, maximum 12 ms.
-    Command: conelane compare --methods clc --out RESULTS
-    """
+    Command: conelane compare --methods clc --out RESULTS"""
     figure, axes = box_plot(results, _iterating(results), 1.15)
     rule(axes, published["clc_median_below_ms"], "paper's median below")
     rule(axes, published["clc_max_ms"], "its maximum", side="left")
@@ -233,13 +221,11 @@ def _fast_enough(sample, published):
 @Experiment
 def clc_fig_16(results, published):
     """CLC Fig. 16: latency by effort
-
     Claim: Latency grows in proportion to the iterations, and little with the points of the map.
     Protocol: mean and one standard deviation in ten bins of equal width; bins of a single scene are left out.
     Source: CLC paper, VIII-G, Fig. 16.
     Published: a picture; linear in the iterations, less than proportional to map points, up to 2500 iterations.
-    Command: conelane compare --methods clc --out RESULTS
-    """
+    Command: conelane compare --methods clc --out RESULTS"""
     samples = [sample.known("iterations") for sample in _iterating(results)]
 
     def against(key):

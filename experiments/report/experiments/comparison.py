@@ -30,7 +30,6 @@ _QUALITY = (("usable", "usable_share", "usable %"), ("success", "success_share",
 @Experiment
 def quality(results, published):
     """Quality of the lanes
-
     Claim: Which method finds a usable lane most often, and how does this depend on false positives?
     Protocol: every method on the same scenes, each on the cone set it was made for (its own n, or all that is visible).
     Usable: a lane that does not leave the track within 20 m; if it never leaves it, it must be at least 20 m or 75 % of the
@@ -40,8 +39,7 @@ def quality(results, published):
     at every pose, as in condition paper. Intervals are 95 % bootstrap, tracks resampled, because scenes of one track are
     similar. Failures and time-outs count in every mean.
     Source: usable is this project's; success and IoU as in the CLC paper, VIII; accurate as in the RLD paper, IV-B.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     under, alone = results.under(results.main_condition), in_condition(results)
     bars = ("Error bars: 95 % intervals, tracks resampled. The axis is stretched towards 100 %. "
             + counts_of_points(under, under.samples))
@@ -74,14 +72,12 @@ def quality(results, published):
 @Experiment
 def steering(results, published):
     """Centre line and steadiness
-
     Claim: How near is the centre line of a usable lane to the true one, and how steady is it from pose to pose?
     Protocol: centre lines of usable lanes compared with the ground truth's over the first 20 m: distance at every half metre,
     heading at 10 m. Unsteady: share of poses whose centre line differs by more than 0.5 m anywhere over the first 15 m
     from that of the pose before; a pose without a lane counts as unsteady.
     Source: this project.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     if not any("lateral_median_m" in row or "unsteady_share" in row for row in results.rows):
         raise Missing("no lane was compared with a true centre line.")
     return table("steering", keys(results) + [
@@ -119,15 +115,13 @@ def _calibration_figure(shown, condition, bins):
 @Experiment
 def calibration(results, published):
     """Confidence and trusted length
-
     Claim: Does a method know when its lane is wrong, and how far it is right?
     Protocol: the share of usable lanes among lanes with about the same confidence, in bins of 0.1, all rates and ranges
     together; on the dotted line, share and confidence are equal. Error: mean over the lanes of the distance from that line. Sure:
     confidence of 0.99 or more. Right where trusted: the lane does not leave the true boundaries within its trusted length;
     trusted: these lengths together, as a share of the lanes' lengths.
     Source: this project.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     shown = dataclasses.replace(results, rows=[row for row in results.rows if row.get("calibration")])
     if not shown.rows:
         raise Missing("no method says how sure it is.")
@@ -166,14 +160,12 @@ def latency_figure(results):
 @Experiment
 def latency(results, published):
     """Latency
-
     Claim: Which method answers in time, at the median and in the tail?
     Protocol: from the scene in memory to the lane in memory, the building of any model included; one thread, pinned to
     one processor; one untimed call before each lap. A run at its time limit counts with the time it took. The real-time
     budget is 50 ms, the period of a 20 Hz LiDAR.
     Source: this project.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     under, alone = results.under(results.main_condition), in_condition(results)
     boxes = box_plot(under, under.samples, 0.95)
     time_rules(boxes[1], True, results.time_limit_ms, under.samples)
@@ -199,15 +191,13 @@ def latency(results, published):
 @Experiment
 def outcomes(results, published):
     """Outcomes of the scenes
-
     Claim: How do methods fail, not only how often?
     Protocol: the first category that fits: no lane, ground truth (exactly the same cones), diverging, too short (below 75 % of
     the ground truth's length), near (all other lanes, which do not diverge). All but none and diverging below 20 m are
     successes. Errors, a part of none: the method failed, or the independent checker rejected the answer of an RLD
     method; the checker recomputes every constraint, objective and bound from the scene.
     Source: categories of the CLC paper, VIII-D; the checker is this project's.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     return table("categories", keys(results) + [
         column(title, percent, lambda row, key=key: row["share"].get(key), measure=key) for key, title in CATEGORY_TITLES.items()] + [
         column("errors", count, lambda row: int(np.sum(part(results, row).status == "error"))),
@@ -221,12 +211,10 @@ CATEGORY_TITLES = dict(zip(CATEGORIES, ("ground truth %", "near %", "too short %
 @Experiment
 def by_track(results, published):
     """Usable lanes by track
-
     Claim: How much does the share of usable lanes depend on the track?
     Protocol: share of usable lanes (success in results of earlier versions), all rates and ranges of a track together.
     Source: this project.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     name = headline_measure(results.samples)
     trained = {sample.label: set(sample.track[sample.trained_on == 1.0]) for sample in results.samples}
     rows = []
@@ -251,14 +239,12 @@ _KINDS = {"exec": "program", "lanes": "lanes file", "solver": "RLD by a solver"}
 @Experiment
 def outside(results, published):
     """Methods from outside
-
     Claim: Which of these methods are not this project's, and how do their authors describe them?
     Protocol: a program answers scene by scene through a pipe; its latency is the whole round trip; that of an echo
     program is shown for comparison. Self-timed: the time that the method itself reports. All latencies of a finished lanes
     file are self-timed. The other columns are from the method's own card.
     Source: this project; the cards are their authors'.
-    Command: conelane compare --methods exec:NAME=COMMAND,lanes:NAME=FILE --out RESULTS
-    """
+    Command: conelane compare --methods exec:NAME=COMMAND,lanes:NAME=FILE --out RESULTS"""
     rows = list({row["method"]: row for row in reversed(results.rows) if "outside" in row}.values())[::-1]
     if not rows:
         raise Missing("no method from outside took part.")
@@ -284,7 +270,6 @@ def outside(results, published):
 @Experiment
 def failure_causes(results, published):
     """Why lanes are not usable
-
     Claim: What is the first error in lanes that are not usable?
     Protocol: every lane that is not usable, all rates and ranges together, by the first place where it leaves the truth.
     If a lane diverges within 20 m, this place is its first vertex off the annotated boundary. Wrong start: the first vertex
@@ -294,8 +279,7 @@ def failure_causes(results, published):
     median step of the ground truth; it has a wrong start if most of the missing length is before it. Leaves the path:
     only a driven path, or a centre line without boundaries, is known, which does not show the cause.
     Source: this project.
-    Command: conelane compare --out RESULTS
-    """
+    Command: conelane compare --out RESULTS"""
     seen = [cause for cause in CAUSES if any(np.any(sample.cause == cause) for sample in results.samples)]
     if not seen:
         raise Missing("no score names a cause.")

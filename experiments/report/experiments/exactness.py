@@ -74,7 +74,6 @@ def _optimality_gaps(rows):
 @Experiment
 def optimality(results, published):
     """The optimum against CLC's best candidate
-
     Claim: How far from optimal is the graph search under the objective that RLD minimises, and does the optimum drive
     better?
     Protocol: every candidate that CLC enumerates within its iteration limit gets its cost under RLD's objective (29);
@@ -82,8 +81,7 @@ def optimality(results, published):
     `path-pair` proves on the same cones. Gap: difference divided by the larger of 1 and the optimum's size. Equal: within 1e-6.
     Optimum and cheapest candidate pass the independent checker; a candidate below a proven optimum would have stopped the run.
     Source: this project; neither paper compares them.
-    Command: conelane study optimality --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/optimality.jsonl
-    """
+    Command: conelane study optimality --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/optimality.jsonl"""
     rows = read_optimality(results)
     if not len(Compared(rows)):
         raise Missing("no scene has a proven optimum and a feasible candidate.")
@@ -153,14 +151,12 @@ def _of_values(key, statistic):
 @Experiment
 def anytime(results, published):
     """What the exact search knows at its time limit
-
     Claim: If the time is too short for a proof, there are a lane graph and a proven gap; both improve with time.
     Protocol: `path-pair` on all cones of each scene, solved again under each limit, one thread. Gap: from the bound to the
     best lane graph known under any limit, divided by the larger of 1 and its cost's size; 0 if the optimum is proven.
     Close: a lane graph whose cost is within 1 % of that one's.
     Source: this project.
-    Command: conelane study anytime --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/anytime.jsonl
-    """
+    Command: conelane study anytime --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/anytime.jsonl"""
     rows = results.stored("anytime.jsonl", {"scene": TEXT, "limit_ms": NUMBER, "proven": YES_OR_NO})
     origin, by_limit = results.origin(rows[0]).strip(), _grouped(rows, lambda row: row["limit_ms"])
     first = min(by_limit)
@@ -186,14 +182,12 @@ def anytime(results, published):
 @Experiment
 def growth(results, published):
     """How the cost of the exact search grows
-
     Claim: Time grows mildly with the cones and steeply with their density.
     Protocol: `path-pair` on the nearest cones of each scene at each size that it exceeds, and on all of them; processor
     time of its thread, from the scene in memory to the answer in memory. A search that reached its limit counts with the
     time that it took. Density: mean number of other cones within 5.5 m of a cone.
     Source: this project.
-    Command: conelane study growth --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/growth.jsonl
-    """
+    Command: conelane study growth --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/growth.jsonl"""
     rows = results.stored("growth.jsonl", {"cones": WHOLE, "all_visible": YES_OR_NO, "density": NUMBER, "edges": WHOLE, "nodes": WHOLE,
                                            "cpu_ms": NUMBER})
     figures = []
@@ -229,14 +223,12 @@ formulations = Experiment(study_table(
      column("columns", fixed, "columns", digits=0), column("rows", fixed, "rows", digits=0), column("LP gap, median %", percent, "median_gap"),
      column("LP gap, mean %", percent, "mean_gap"), column("nodes", fixed, "mean_nodes"), column("build ms", milliseconds, "median_build_ms"),
      column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms")]), about="""Formulations
-
     Claim: Both formulations have the same optimum; the tight one has the stronger relaxation and is solved faster.
     Protocol: the n nearest cones of each scene with at least n cones; the tight formulation by `cbc`, the printed one by
     `cbc-main`, each the faster of the two on it; one thread, building included. LP gap: (optimum - relaxation) divided
     by the larger of 1 and the optimum's size. A difference in optima above 1e-6 would have stopped the run.
     Source: this project; the printed rows are those of the RLD paper, III.
-    Command: conelane study formulations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/formulations.jsonl
-    """)
+    Command: conelane study formulations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/formulations.jsonl""")
 
 relaxations = Experiment(study_table(
     "relaxations", "relaxations.jsonl", _FEW_KINDS | {"feasible": WHOLE, "answered": WHOLE, "accurate": NUMBER, "worst_ms": NUMBER},
@@ -244,14 +236,12 @@ relaxations = Experiment(study_table(
      column("mean gap %", percent, "mean_gap", digits=2), column("worst gap %", percent, "worst_gap"), column("accurate %", percent, "accurate"),
      column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms"), column("max ms", milliseconds, "worst_ms")]),
     about="""Relaxations
-
     Claim: Does relaxing the binary constraints decrease latency, and how much accuracy does it cost?
     Protocol: every solver that proves nothing, and `path-pair`, which gives the optimum, on the n nearest cones; one
     thread, the problem's making included. Gap: (objective - least cost) divided by the larger of 1 and the least cost's
     size, over the answered scenes. Accurate: the RLD paper's four checks, a solve without an answer counts as inaccurate.
     Source: this project; the question is the RLD paper's own, V.
-    Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl
-    """)
+    Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl""")
 
 confidence_and_colour = Experiment(study_table(
     "confidence-and-colour", "confidence-and-colour.jsonl",
@@ -260,7 +250,6 @@ confidence_and_colour = Experiment(study_table(
      column("accurate %", percent, "accurate"), column("success %", percent, "success"),
      column("weight by fold", text, lambda row: ", ".join(f"{weight:g}" for weight in row.get("weights", ())) or None)]),
     about="""Confidence and colour
-
     Claim: How much more accurate is RLD with detection confidences, or with cone colours of which some are wrong?
     Protocol: scenes and folds of a tuning whose parameters were fitted to geometry alone; the same scenes with simulated
     confidences or colours. Each fold is measured on its held-out tracks; the weight of the additional data (w_b with
@@ -268,8 +257,7 @@ confidence_and_colour = Experiment(study_table(
     on the cone set; success: no lane that leaves the track within 20 m.
     Source: this project; the question is the RLD paper's own, V.
     Command: conelane study confidence-and-colour --record detectors/parameters/context.record.json --tracks TRACK...
-    --out RESULTS/confidence-and-colour.jsonl
-    """)
+    --out RESULTS/confidence-and-colour.jsonl""")
 
 
 _BENCHMARKS = "benchmarks.json"
@@ -280,14 +268,12 @@ _MICROSECONDS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}
 @Experiment
 def update_or_rebuild(results, published):
     """Update against rebuild
-
     Claim: A program built at start and updated before each solve, as the RLD paper does it, saves building it.
     Protocol: Google Benchmark; the scenes take turns. Problem: the numbers of a scene. Build: a new program from
     them. Update: the same program with the new numbers.
     Source: this project; the RLD paper, III, builds its model at program start.
     Command: conelane_benchmarks --benchmark_filter=problem/|build/|update/ --benchmark_out_format=json
-    --benchmark_out=RESULTS/benchmarks.json
-    """
+    --benchmark_out=RESULTS/benchmarks.json"""
     path, times = results.path_of(_BENCHMARKS), {}
     try:
         for run in read_json(path)["benchmarks"]:

@@ -16,14 +16,12 @@ _LIMIT_MS = 400.0
 @Experiment
 def rld_fig_5(results, published):
     """RLD Fig. 5: latency by cone-set size
-
     Claim: An exact answer takes more time with more cones; the paper stays under 80 ms below 14.
     Protocol: mean and one standard deviation of all solves at each size, from the sweep; a lower bar that would reach
     zero ends at a tenth of the mean.
     Source: RLD paper, IV-A, Fig. 5: Mosek, its own machine and its own scenes.
     Published: mean 71.79 ms at n = 12; under 80 ms on average below 14 cones.
-    Command: conelane sweep --out RESULTS/sweep
-    """
+    Command: conelane sweep --out RESULTS/sweep"""
     def point(sample):
         mean, deviation = sample.latency.mean(), sample.latency.std()
         return sample.nearest, mean, min(deviation, 0.9 * mean), deviation
@@ -72,15 +70,13 @@ def _solved(results, samples, published):
 @Experiment
 def rld_fig_6(results, published):
     """RLD Fig. 6: distribution of latency at n = 12
-
     Claim: Nearly every scene of 12 cones is solved within 0.4 s, most of them far sooner.
     Protocol: every method that saw the 12 nearest cones, all rates and ranges together. Solved: within 0.4 s the
     optimum with an absolute gap of at most 1e-5, or the proof that there is no lane.
     Source: RLD paper, IV-A, Fig. 6: Mosek, its own machine and a car's own laps.
     Published: 97.19 % solved within 0.4 s, mean of these 71.79 ms, 95 % of all within 155.88 ms, standard deviation
     51.96 ms.
-    Command: conelane compare --methods rld-cbc,rld-paper --nearest 12 --out RESULTS
-    """
+    Command: conelane compare --methods rld-cbc,rld-paper --nearest 12 --out RESULTS"""
     size = published["rld_cone_set"]
     samples = [sample for sample in results.samples if sample.nearest == size]
     if not samples:
@@ -121,7 +117,6 @@ def _on_topologies(results, published):
 @Experiment
 def rld_fig_7(results, published):
     """RLD Fig. 7: inaccurate lanes by topology
-
     Claim: Less than 10 % of the lanes are inaccurate, whatever the topology, up to as many false positives as cones.
     Protocol: methods that saw the 12 nearest cones, on tracks called straight, circle and curvy; the share of scenes
     where one of the paper's four checks fails. Its ratio 1:5 is 16.7 % of all points, 1:1 is 50 %. One scale for all
@@ -129,8 +124,7 @@ def rld_fig_7(results, published):
     Source: RLD paper, IV-B, Fig. 7: its own tracks; the parameters of its model are not printed.
     Published: 3.62 % inaccurate at 1:5, less than 10 % at 1:1, all three topologies together.
     Command: conelane compare --tracks generated:straight generated:circle generated:curvy --nearest 12 --fp
-    0,0.1667,0.2857,0.375,0.4444,0.5 --out RESULTS/topologies
-    """
+    0,0.1667,0.2857,0.375,0.4444,0.5 --out RESULTS/topologies"""
     samples, present = _on_topologies(results, published)
     paper = [(100 * row["rate"], row["inaccurate"]) for row in published["rld"]]
     most = max(share for _, share in paper + [point for sample in samples for topology in present for point in _inaccurate(sample, topology)])

@@ -73,15 +73,13 @@ def disagreements(solves):
 @Experiment
 def exact_backends(results, published):
     """Exact backends
-
     Claim: All exact solvers have the same optimum; they differ in time.
     Protocol: every backend on the same cone sets of the same scenes, one thread, pinned; the time is from the scene in
     memory to the lane graph in memory, the program's building included. Every lane graph passes the independent checker
     or counts as an error. Time-outs count in every figure with the time that they took.
     Source: this project; the RLD paper runs Mosek on the printed formulation.
     Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
-    Command: conelane study backends --sizes 12,20,30,60,all --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
-    """
+    Command: conelane study backends --sizes 12,20,30,60,all --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl"""
     solves, origin = _read(results)
     cold = [one for one in solves if not one.is_warm]
     figures, agreement = [], []
@@ -112,14 +110,12 @@ def exact_backends(results, published):
 @Experiment
 def warm_start(results, published):
     """Warm start along a lap
-
     Claim: What does the last scene's lane graph save an exact solver?
     Protocol: each backend twice on the same scenes in travel order, without and with the start. Ratio: geometric mean of
     the time with it divided by the time without, scene by scene; below 1, the start saves time. False positives are drawn at
     every pose.
     Source: this project; the RLD paper builds its model once and updates it.
-    Command: conelane study backends --warm-start --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
-    """
+    Command: conelane study backends --warm-start --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl"""
     try:
         solves, origin = _read(results)
     except Missing:
@@ -196,7 +192,6 @@ def _spread_of_reference(blocks):
 @Experiment
 def solver_measures(results, published):
     """Measures of solvers
-
     Claim: Which solver is fastest overall, how steady is it, and what is gained by choosing a solver for each scene?
     Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program. Solved: proven
     within the limit, accepted by the checker, and refuted by no other backend. Geometric mean shifted by 1 ms, failures at the
@@ -207,8 +202,7 @@ def solver_measures(results, published):
     docs/benchmark-measures.md.
     Source: this project.
     Command: conelane study backends --sizes 12,20,30,60,all --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out
-    RESULTS/backends.jsonl
-    """
+    RESULTS/backends.jsonl"""
     summaries, blocks, pairs, selections, gaps = (_of_kind(results, kind) for kind in _KINDS)
     if not summaries:
         raise Missing(f"there is no {FILE} with measures.")

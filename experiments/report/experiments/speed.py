@@ -46,13 +46,11 @@ def growth_figure(results):
 @Experiment
 def same_cone_set(results, published):
     """The same cone set for all
-
     Claim: Which method is ahead at which cone-set size, and how does its time grow?
     Protocol: every method on the n nearest cones ahead, the same scenes at every size. If several names are listed, zero
     is within the 95 % interval of the paired difference from the best (tracks resampled). Fastest: least geometric mean.
     Source: this project; the sizes are those of the RLD paper's Fig. 5 and beyond.
-    Command: conelane sweep --out RESULTS/sweep
-    """
+    Command: conelane sweep --out RESULTS/sweep"""
     def share(name):
         def point(sample):
             mean, interval = measures.share_and_interval(sample, name)
@@ -90,14 +88,12 @@ def ratio(title, of):
 @Experiment
 def paired_latency(results, published):
     """Paired latencies
-
     Claim: By what factor do methods of the same cone set differ in time on the same scene?
     Protocol: geometric mean over scenes of a method's time divided by that of the method with the least
     geometric mean on the same cone set, of the comparison and of the sweep; 2.00 is twice the time. 95 % bootstrap
     interval, tracks resampled.
     Source: this project.
-    Command: conelane compare --methods rld-cbc,rld-paper --out RESULTS
-    """
+    Command: conelane compare --methods rld-cbc,rld-paper --out RESULTS"""
     of_set = {}  # by cone-set size: of the comparison, then of the sweep where that has no two
     for sample in results.samples:
         of_set.setdefault(sample.nearest, []).append(sample)
@@ -140,7 +136,6 @@ _SWEEP_SIZES = (12, 30)
 @Experiment
 def performance_profiles(results, published):
     """Performance profiles
-
     Claim: Which exact method is fastest on most scenes, and how far behind are the others?
     Protocol: Dolan and Moré: the share of scenes that a method solves (it proves the optimum, or that there is
     no lane) within a multiple of the fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods
@@ -148,8 +143,7 @@ def performance_profiles(results, published):
     a scene without a proof after 0.4 s counts as unsolved. If the methods of the comparison saw different cone sets,
     those of the sweep are shown.
     Source: Dolan and Moré, Benchmarking optimization software with performance profiles, 2002.
-    Command: conelane compare --methods rld-cbc,rld-pair --nearest 12 --out RESULTS
-    """
+    Command: conelane compare --methods rld-cbc,rld-pair --nearest 12 --out RESULTS"""
     problems = {}  # (cone set, objective) -> samples, two or more
     for samples, sizes in ((results.samples, None), (results.sweep, _SWEEP_SIZES)):
         known = {nearest for nearest, _ in problems}
@@ -222,15 +216,13 @@ def _replay(results):
 @Experiment
 def race(results, published):
     """Races: driving the course with the answers
-
     Claim: Does a car that follows a method's lanes finish the race?
     Protocol: a kinematic car with pure pursuit follows the centre line of each answer, 10 frames a second; the race ends
     after the last lap, or where the car's middle leaves the lane. Finished: races driven to their end. To departure: median of
     the metres along the course of the races that left the lane. Unsteady: the path moved by more than 0.3 m within 10 m
     from one frame to the next. Wrong path: frames whose path leaves the lane within 10 m and does not say that it is old.
     Source: this project.
-    Command: conelane race --tracks TRACKS --methods front,clc --fp 0,0.3,0.5 --out RESULTS/race
-    """
+    Command: conelane race --tracks TRACKS --methods front,clc --fp 0,0.3,0.5 --out RESULTS/race"""
     run, of_driver = _read_races(results)
     rows = [{"method": method, "rate": rate, "races": races} for (method, rate), races in of_driver.items()]
 
