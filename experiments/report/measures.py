@@ -5,6 +5,8 @@ import functools
 
 import numpy as np
 
+from .summaries import quantile
+
 REAL_TIME_BUDGET_MS = 50.0
 CONFIDENCE = 0.95
 RESAMPLES = 2000
@@ -33,8 +35,7 @@ def _track_index(tracks):
 
 
 def _interval(estimates):
-    tail = 100.0 * (1.0 - CONFIDENCE) / 2.0
-    return tuple(float(end) for end in np.percentile(estimates, [tail, 100.0 - tail]))
+    return tuple(float(quantile(estimates, (1.0 + sign * CONFIDENCE) / 2.0)) for sign in (-1, 1))
 
 
 def mean_interval(values, tracks):
