@@ -158,8 +158,11 @@ def _summary(results, conditions):
     def rank(sample):
         usable = share_and_interval(sample, "usable")[0]
         return usable if usable is not None else float(sample.success.mean())
-    of_conditions = [column(f"in {condition or 'none named'} %", percent, lambda sample, condition=condition: share_and_interval(
-        sample.at(condition=condition), "usable")[0], hint=hint(condition)) for condition in results.conditions] if len(results.conditions) > 1 else []
+
+    def in_condition(condition):
+        return column(f"in {condition or 'none named'} %", percent,
+                      lambda sample: share_and_interval(sample.at(condition=condition), "usable")[0], hint=hint(condition))
+    of_conditions = list(map(in_condition, results.conditions)) if len(results.conditions) > 1 else []
     return table("headline", _columns(results, _ahead(results, results.samples), of_conditions),
                  sorted(results.samples, key=rank, reverse=True), attributes=lambda sample: {"method": sample.label},
                  note=f"All conditions, rates and ranges together. {_NOTE}{note_on_limit(results)}{note_on_training(results)}")

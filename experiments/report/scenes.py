@@ -329,5 +329,5 @@ def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual
                  "scenes": [scene for scene in scenes if scene in frames]}
                 for (track, condition, rate, range_m), scenes in laps.scenes.items()]
     lap_list = [lap for lap in lap_list if lap["scenes"]]
-    return SceneData(frames, lap_list, _start(results, frames, lap_list), laps.scene_count, len(chosen),
-                     len(laps.scenes), stride, worst, {key: len(of_key) for key, of_key in wrong.items()}, longest_gap_m=longest_gap_m, usual_width_m=usual_width_m)
+    return SceneData(frames, lap_list, _start(results, frames, lap_list), laps.scene_count, len(chosen), len(laps.scenes), stride, worst,
+                     {key: len(of_key) for key, of_key in wrong.items()}, longest_gap_m=longest_gap_m, usual_width_m=usual_width_m)

@@ -27,12 +27,14 @@ def _moderate(results):
 
 def _table_by_rate(name, results, published, samples, shares, columns, note=""):
     """For each rate of ours or the paper's: the paper's row first, then one of each method. `shares` are of the scores of a method."""
-    rows = []
-    for rate in sorted({round(rate, 6) for sample in samples for rate in sample.rate} | {round(row["rate"], 6) for row in published["clc"]}):
-        rows += [{key: value / 100 for key, value in row.items()} | {"sample": None, "rate": rate} for row in published["clc"] if round(row["rate"], 6) == rate]
-        rows += [shares(part) | {"sample": sample, "rate": rate} for sample in samples if len(part := sample.where(np.abs(sample.rate - rate) < 1e-6))]
-    first = Column("method", lambda row: method_cell(results, row["sample"].method, row["sample"].label) if row["sample"] else text("CLC paper"), "text")
-    return table(name, [first, column("false positives %", percent, "rate"), *(column(title, percent, key) for key, title in columns.items())], rows,
+    def method(row):
+        return method_cell(results, row["sample"].method, row["sample"].label) if row["sample"] else text("CLC paper")
+    rows, printed = [], {round(row["rate"], 6): {key: value / 100 for key, value in row.items()} for row in published["clc"]}
+    for rate in sorted({round(rate, 6) for sample in samples for rate in sample.rate} | set(printed)):
+        rows += [printed[rate] | {"sample": None, "rate": rate}] if rate in printed else []
+        rows += [shares(part) | {"sample": sample, "rate": rate} for sample in samples
+                 if len(part := sample.where(np.abs(sample.rate - rate) < 1e-6))]
+    return table(name, [Column("method", method, "text"), column("false positives %", percent, "rate"), *(column(title, percent, key) for key, title in columns.items())], rows,
                  note=note, is_published=lambda row: row["sample"] is None)
 
 

@@ -94,7 +94,8 @@ def _bins(rows):
         for lanes, confidence, usable in row["calibration"].get("bins", ()):
             found = sums.setdefault(min(int(10 * confidence), 9), np.zeros(3))
             found += (lanes, lanes * confidence, lanes * usable)
-    return [{"lanes": int(lanes), "confidence": confidence / lanes, "usable": usable / lanes} for _, (lanes, confidence, usable) in sorted(sums.items())]
+    return [{"lanes": int(lanes), "confidence": confidence / lanes, "usable": usable / lanes}
+            for _, (lanes, confidence, usable) in sorted(sums.items())]
 
 
 def _calibration_figure(shown, condition, bins):

@@ -232,7 +232,8 @@ formulations = Experiment(study_table(
 
 relaxations = Experiment(study_table(
     "relaxations", "relaxations.jsonl", _FEW_KINDS | {"feasible": WHOLE, "answered": WHOLE, "accurate": NUMBER, "worst_ms": NUMBER},
-    [column("n", count, "cones"), column("solver", text, "solver"), *(column(key, count, key) for key in ("scenes", "feasible", "answered", "optimal")),
+    [column("n", count, "cones"), column("solver", text, "solver"),
+     *(column(key, count, key) for key in ("scenes", "feasible", "answered", "optimal")),
      column("mean gap %", percent, "mean_gap", digits=2), column("worst gap %", percent, "worst_gap"), column("accurate %", percent, "accurate"),
      column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms"), column("max ms", milliseconds, "worst_ms")]),
     about="""Relaxations

@@ -251,8 +251,10 @@ def race(results, published):
     curves = series([(method, sorted((100 * row["rate"], 100 * finished(row["races"])) for row in rows if row["method"] == method))
                      for method in dict.fromkeys(row["method"] for row in rows)])
     return table("race-table", [
-        column("method", text, lambda row: row["method"]), column("false positives %", lambda rate: Cell(percent_label(rate), rate), lambda row: row["rate"]),
-        of_races("races", count, len), of_races("finished %", percent, finished), of_races("m to departure", fixed, median_of("departure_m"), digits=0),
+        column("method", text, lambda row: row["method"]),
+        column("false positives %", lambda rate: Cell(percent_label(rate), rate), lambda row: row["rate"]),
+        of_races("races", count, len), of_races("finished %", percent, finished),
+        of_races("m to departure", fixed, median_of("departure_m"), digits=0),
         of_races("cones hit a lap", fixed, lambda races: np.mean(
             [race["cones_hit"] / max(1, race["finished_laps"] + (not race["finished"])) for race in races]), digits=2),
         of_races("lateral p95 m", fixed, median_of("lateral_error_p95_m"), digits=2),
