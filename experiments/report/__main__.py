@@ -8,9 +8,10 @@ import os
 import sys
 import warnings
 
-from .load import InputError, load_results
+from .load import load_results
 from .page import render
 from .pictures import pictures
+from .records import InputError
 
 
 def write(path, content):

@@ -4,7 +4,7 @@ other conditions."""
 from html import escape
 
 from .conditions import whole
-from .figures import percent_label
+from .summaries import percent_label
 
 
 def _explained(results, conditions):

@@ -7,12 +7,13 @@ import numpy as np
 
 from . import gallery, measures
 from .conditions import short
-from .experiments import optimality
-from .figures import percent_label
-from .leaders import REAL_TIME_BUDGET_MS, headline_values, leaders_of, usable_values
+from .experiments.exactness import Compared, read_optimality
+from .load import Missing
+from .measures import REAL_TIME_BUDGET_MS, headline_measure, leaders_of, share_and_interval
 from .methods import CLC_PAPER, RLD_PAPER, described
 from .rows import note_on_limit, note_on_training, scenes_cell
-from .tables import Column, block_table, method_cell, milliseconds, percent, table
+from .summaries import percent_label, quantile
+from .tables import Column, column, method_column, milliseconds, percent, table
 from .theme import METHOD_COLORS
 
 _IN_TIME_SHARE = 0.99  # of the scenes
@@ -23,32 +24,22 @@ def _joined(names):
     return names[0] if len(names) == 1 else ", ".join(names[:-1]) + " and " + names[-1]
 
 
-def _by_condition(results, best, values_of):
-    """The mean under each condition, where there are several."""
-    if len(results.conditions) < 2:
-        return ""
-    means = []
-    for condition in results.conditions:
-        values = values_of(best.at(condition=condition))[0]
-        if values:
-            means.append(f"{escape(condition or 'none named')} {100 * np.mean(list(values.values())):.1f}{_NBSP}% of "
-                         f"{len(values)}")
-    return f" ({', '.join(means)})"
-
-
 def _recommended(results, samples):
-    """The one ahead over all scenes, as a sentence's end; None without scores."""
-    values_of = headline_values(results.samples)
-    leaders = leaders_of(samples, values_of)
+    """The one ahead over all scenes, and a sentence's end on it; None without scores."""
+    name = headline_measure(results.samples)
+    leaders = leaders_of(samples, name)
     if leaders is None:
         return None, ""
-    best = leaders[1][0]
-    level = [f"<b>{escape(sample.label)}</b>" for sample in leaders[1][1:]]
+    best, *others = leaders[1]
+    means = [(condition, best.at(condition=condition).measured(name)[1]) for condition in results.conditions]
+    by_condition = ", ".join(f"{escape(condition or 'none named')} {100 * values.mean():.1f}{_NBSP}% of {len(values)}"
+                             for condition, values in means if len(values)) if len(means) > 1 else ""
+    level = [f"<b>{escape(sample.label)}</b>" for sample in others]
     tail = f" On these tracks, {_joined(level)} cannot be distinguished from it." if level else ""
-    what = "usable lanes" if values_of is usable_values else "success"
-    return best, (f"<b>{escape(best.label)}</b>: {what} in {100 * leaders[0]:.1f}{_NBSP}% of {len(values_of(best)[0])} scenes"
-                  f"{_by_condition(results, best, values_of)}, 99{_NBSP}% of the answers within "
-                  f"{measures.quantile(best.latency, 0.99):.2f}{_NBSP}ms.{tail}")
+    what = "usable lanes" if name == "usable" else "success"
+    return best, (f"<b>{escape(best.label)}</b>: {what} in {100 * leaders[0]:.1f}{_NBSP}% of {len(best.measured(name)[1])} scenes"
+                  f"{f' ({by_condition})' if by_condition else ''}, 99{_NBSP}% of the answers within "
+                  f"{quantile(best.latency, 0.99):.2f}{_NBSP}ms.{tail}")
 
 
 def _sentence(results):
@@ -110,95 +101,86 @@ def _checker_sentence(results):
 
 def _optimality_sentence(results):
     """How far the graph search is from RLD's optimum, and which of the two drives better."""
-    rows = optimality.compared(optimality.read(results))
-    if not rows:
+    try:
+        both = Compared(read_optimality(results))
+    except Missing:
         return ""
-    equal = np.mean([float(row["equal"]) for row in rows])
-    best, candidate = (optimality.success(rows, name) for name in ("optimum", "candidate"))
-    interval = measures.mean_interval(best - candidate, optimality.tracks_of(rows))
+    if not len(both):
+        return ""
+    best, candidate = both.success("optimum"), both.success("candidate")
+    interval = measures.mean_interval(best - candidate, both.track)
     told = interval and not interval[0] <= 0.0 <= interval[1]
     drives = ("drives no better or worse" if not told else
               "drives better" if best.mean() > candidate.mean() else "drives worse")
     return (f"<li>Under RLD's objective, the best of CLC's candidates is the proven optimum in "
-            f"{100 * equal:.1f}{_NBSP}% of {len(rows)} scenes. The optimum {drives}: success "
+            f"{100 * both.equal.mean():.1f}{_NBSP}% of {len(both)} scenes. The optimum {drives}: success "
             f"{100 * best.mean():.1f}{_NBSP}% against {100 * candidate.mean():.1f}{_NBSP}%.</li>")
 
 
-def _mean(part, name):
-    """Mean and interval of a column where it is known; None twice where it never is."""
-    known = part.known(name)
-    values = known.values[name]
-    return (float(values.mean()), measures.mean_interval(values, known.track)) if len(values) else (None, None)
-
-
-def _block(results, conditions, condition, rate):
-    parts = [part for part in (sample.at(rate, condition=condition) for sample in results.samples) if len(part)]
-    leaders = leaders_of(parts, headline_values(results.samples))
-    ahead = {part.label for part in leaders[1]} if leaders else set()
-    rows, attributes = [], []
-    for part in parts:
-        usable, interval = _mean(part, "usable")
-        marks = {"ahead": "yes"} if part.label in ahead else {}
-        rows.append([method_cell(results.methods, part.method, part.label), percent(usable, interval=interval, **marks)] +
-                    _measured(results, part, not part.has("usable"), marks))
-        attributes.append({"method": part.label, "condition": condition, "rate": rate})
-    where = f"{percent_label(rate)} % false positives"
-    known = short(conditions, condition)
-    return (f"{condition}{f' ({known})' if known else ''}: {where}" if condition else where), rows, attributes
-
-
-_COLUMNS = (Column("success %"), Column("mean IoU %"), Column("exact %"), Column("p99 ms"), Column("max ms"),
-            Column("scenes"))
 _NOTE = ("Usable: the lane is right for the first 20 m and long enough to drive by. Success: that of the CLC paper, which a lane of "
          "two metres has too. Exact: exactly the cones of the ground truth. Small: 95 % interval, tracks resampled. Bold: "
          "the best, or not distinguishable from it by the paired difference, tracks resampled.")
 
 
-def _measured(results, part, is_marked_by_success, marks):
-    """Cells of _COLUMNS."""
-    return [percent(part.success.mean(), **(marks if is_marked_by_success else {})), percent(part.mean_iou),
-            percent(float(np.mean(part.category == "ground_truth"))),
-            milliseconds(measures.quantile(part.latency, 0.99), limit_ms=results.time_limit_ms),
-            milliseconds(part.latency.max(), limit_ms=results.time_limit_ms),
-            scenes_cell(len(part), part.has("trained_on"))]
+def _ahead(results, samples):
+    """Those that are ahead by the headline's measure."""
+    leaders = leaders_of(samples, headline_measure(results.samples))
+    return leaders[1] if leaders else []
 
 
-def _hint(results, conditions, condition):
-    """What a condition is, and how many scenes it has."""
-    scenes = max(len(sample.at(condition=condition)) for sample in results.samples)
-    return ", ".join(filter(None, (short(conditions, condition), f"n\u00a0=\u00a0{scenes}")))
+def _columns(results, ahead, of_conditions=()):
+    """Of rows that are samples; the cell of the headline's measure is marked for those ahead."""
+    marks = {id(sample): {"ahead": "yes"} for sample in ahead}
+
+    def usable(sample):
+        share, interval = share_and_interval(sample, "usable")
+        return percent(share, interval=interval, **marks.get(id(sample), {}))
+
+    def success(sample):
+        return percent(sample.success.mean(), **({} if sample.has("usable") else marks.get(id(sample), {})))
+
+    def time(title, of):
+        return column(title, milliseconds, lambda sample: of(sample.latency), limit_ms=results.time_limit_ms)
+    return [method_column(results), Column("usable %", usable), *of_conditions,
+            Column("success %", success),
+            column("mean IoU %", percent, lambda sample: sample.mean_iou),
+            column("exact %", percent, lambda sample: np.mean(sample.category == "ground_truth")),
+            time("p99 ms", lambda latency: quantile(latency, 0.99)), time("max ms", max),
+            Column("scenes", lambda sample: scenes_cell(len(sample), sample.has("trained_on")))]
 
 
 def _summary(results, conditions):
     """A row for each method over all that was measured, the best first."""
-    values_of = headline_values(results.samples)
-    leaders = leaders_of(results.samples, values_of)
-    ahead = {part.label for part in leaders[1]} if leaders else set()
-    several = results.conditions if len(results.conditions) > 1 else []
-    rows = []
-    for sample in results.samples:
-        usable, interval = _mean(sample, "usable")
-        marks = {"ahead": "yes"} if sample.label in ahead else {}
-        of_conditions = [percent(_mean(sample.at(condition=condition), "usable")[0]) for condition in several]
-        rank = usable if usable is not None else float(sample.success.mean())
-        rows.append((rank, sample.label,
-                     [method_cell(results.methods, sample.method, sample.label), percent(usable, interval=interval, **marks)]
-                     + of_conditions + _measured(results, sample, not sample.has("usable"), marks)))
-    rows.sort(key=lambda row: -row[0])
-    columns = [Column("method", "text"), Column("usable %")] + [
-        Column(f"in {condition or 'none named'} %", hint=_hint(results, conditions, condition)) for condition in several] + list(_COLUMNS)
-    return table("headline", "", columns, [cells for _, _, cells in rows],
-                 row_attributes=[{"method": label} for _, label, _ in rows],
-                 note=f"All conditions, rates and ranges together. {_NOTE}{note_on_limit(results)}"
-                      f"{note_on_training(results)}")
+    def hint(condition):
+        scenes = max(len(sample.at(condition=condition)) for sample in results.samples)
+        return ", ".join(filter(None, (short(conditions, condition), f"n\u00a0=\u00a0{scenes}")))
+
+    def rank(sample):
+        usable = share_and_interval(sample, "usable")[0]
+        return usable if usable is not None else float(sample.success.mean())
+
+    def in_condition(condition):
+        return column(f"in {condition or 'none named'} %", percent,
+                      lambda sample: share_and_interval(sample.at(condition=condition), "usable")[0], hint=hint(condition))
+    of_conditions = list(map(in_condition, results.conditions)) if len(results.conditions) > 1 else []
+    return table("headline", _columns(results, _ahead(results, results.samples), of_conditions),
+                 sorted(results.samples, key=rank, reverse=True), attributes=lambda sample: {"method": sample.label},
+                 note=f"All conditions, rates and ranges together. {_NOTE}{note_on_limit(results)}{note_on_training(results)}")
 
 
 def by_rate(results, conditions):
     """The same measures by condition and rate of false positives."""
-    columns = [Column("method", "text"), Column("usable %")] + list(_COLUMNS)
-    blocks = [_block(results, conditions, condition, rate) for condition in results.conditions for rate in results.rates]
-    return block_table("by-rate", "All methods by condition and false positives", columns,
-                       [block for block in blocks if block[1]], note=f"All ranges together. {_NOTE}{note_on_limit(results)}{note_on_training(results)}")
+    blocks = []
+    for condition in results.conditions:
+        known = short(conditions, condition)
+        for rate in results.rates:
+            where = f"{percent_label(rate)} % false positives"
+            parts = [part for sample in results.samples if len(part := sample.at(rate, condition=condition))]
+            blocks.append((f"{condition}{f' ({known})' if known else ''}: {where}" if condition else where, parts))
+    return table("by-rate", _columns(results, [part for _, parts in blocks for part in _ahead(results, parts)]),
+                 blocks=[block for block in blocks if block[1]], caption="All methods by condition and false positives",
+                 attributes=lambda sample: {"method": sample.label, "condition": sample.condition[0], "rate": sample.rate[0]},
+                 note=f"All ranges together. {_NOTE}{note_on_limit(results)}{note_on_training(results)}")
 
 
 def picture(results, data):
@@ -208,32 +190,26 @@ def picture(results, data):
     if frame is None:
         return ""
     slot = next((slot for slot, answer in enumerate(frame["a"]) if answer and answer[7] == 1), 0)
-    track = next(lap["track"] for lap in data.laps if data.start in lap["scenes"])
-    svg = gallery.drawing(results, frame, slot, track, data.longest_gap_m, gallery.view_of(frame))
-    label = escape(results.samples[slot].label)
-    return (f'<figure id="cone-lane" class="scene"><div role="img" aria-label="A cone lane: cones, false positives and the '
-            f'left and right boundary that {label} found">{svg}</div><figcaption>A cone lane in a scene of these results, as {label} found it. '
-            f"{gallery.short_legend()}</figcaption></figure>")
+    label = results.samples[slot].label
+    said = f"A cone lane: cones, false positives and the left and right boundary that {label} found"
+    return (f'<figure id="cone-lane" class="scene">{gallery.drawing(data.start, slot, said, zoom=True)}<figcaption>A cone lane in a scene of '
+            f"these results, as {escape(label)} found it. {gallery.short_legend()}</figcaption></figure>")
 
 
 def _methods(results, data):
     """A line and a small picture of each method: its lane in the same scene."""
     scene = data.start or None
-    view = gallery.view_of(data.frames[scene]) if scene else None
-    track_of = {name: lap["track"] for lap in data.laps for name in lap["scenes"]}
     answers = data.frames[scene]["a"] if scene else []
     right = sum(1 for answer in answers if answer and answer[7] == 1)
     cards = []
     for slot, sample in enumerate(results.samples):
-        about = described(results, sample.method)
+        line, source = described(results, sample.method)
         here = f"<br>Here: {escape(gallery.said(answers[slot]))}." if answers else ""
         color = results.methods.index(sample.method) % METHOD_COLORS
-        picture = "" if scene is None else (
-            f'<div role="img" aria-label="lane of {escape(sample.label)}">'
-            f"{gallery.drawing(results, data.frames[scene], slot, track_of[scene], data.longest_gap_m, view)}</div>")
+        picture = "" if scene is None else gallery.drawing(scene, slot, f"lane of {sample.label}", zoom=True)
         cards.append(f'<figure class="scene" data-method="{escape(sample.label)}">{picture}<figcaption>'
                      f'<span class="swatch" style="background:var(--m{color})"></span><b>{escape(sample.label)}</b> '
-                     f"{escape(about.line)} <i>{escape(about.source)}</i>{here}</figcaption></figure>")
+                     f"{escape(line)} <i>{escape(source)}</i>{here}</figcaption></figure>")
     shown = ("" if scene is None else
              f'<p class="note">The same scene for all, <button type="button" class="link" data-open="{escape(scene)}">'
              f"{escape(scene)}</button>, at the same zoom, with turns ahead and not the hardest: {right} of "

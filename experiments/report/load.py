@@ -4,11 +4,12 @@ import dataclasses
 import json
 import math
 import os
-import re
 from array import array
 from dataclasses import dataclass, field
 
 import numpy as np
+
+from .records import NUMBER, TEXT, WHOLE, InputError, label_of, read_json, read_lines, require, require_all
 
 # Folders of further comparisons in the results, for experiments that take other scenes or options: cone-set sizes, the
 # RLD paper's topologies, all candidates scored.
@@ -38,13 +39,8 @@ _NUMBERS = {
 _REQUIRED = ("rate", "range", "lane_length", "ground_truth_length", "cones", "latency")
 
 
-class InputError(Exception):
-    """Names the file and, where there is one, the line and the key."""
-
-
-def label_of(method, nearest):
-    """How a method on a cone set is called in every table, as in results.jsonl's own table."""
-    return method if nearest is None else f"{method} n={nearest}"
+class Missing(Exception):
+    """The results do not hold what an experiment shows; says what."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +99,11 @@ class Sample:
 
     def has(self, name):
         return bool(np.any(~np.isnan(self.values[name])))
+
+    def measured(self, name):
+        """The rows that have this measure, and its values."""
+        part = self if name == "success" else self.known(name)
+        return part, getattr(part, name)
 
 
 @dataclass
@@ -165,60 +166,28 @@ class Results:
     def path(self, name):
         return os.path.join(self.directory, name)
 
+    def path_of(self, name):
+        """Of a file that has to be there; raises Missing."""
+        if not os.path.exists(self.path(name)):
+            raise Missing(f"there is no {name}.")
+        return self.path(name)
+
     def origin(self, row):
         """A sentence where a stored row comes from another commit than the comparison; else nothing."""
         commit = row.get("commit", "unknown")
         return "" if commit == self.run.get("commit", "unknown") else f" Measured at commit {commit}."
 
-
-_SCENE_AT_START = re.compile(r'\{"(?:id|scene)":"([^"\\]*)"')
-
-
-def read_lines(path, scenes=None):
-    """Yields (line number, object) of a file in JSON Lines. With `scenes`, lines that begin with the id of another
-    scene are passed over unread: lanes with all their candidates are large."""
-    try:
-        stream = open(path, encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from None
-    with stream:
-        number = 0
-        try:
-            for number, line in enumerate(stream, 1):
-                start = _SCENE_AT_START.match(line) if scenes is not None else None
-                if not line.strip() or (start and start[1] not in scenes):
-                    continue
-                value = json.loads(line)
-                if not isinstance(value, dict):
-                    raise InputError(f"{path}:{number}: no JSON object")
-                yield number, value
-        except (json.JSONDecodeError, UnicodeDecodeError) as error:
-            raise InputError(f"{path}:{number}: {error}") from None
-
-
-def read_object(path):
-    try:
-        with open(path, encoding="utf-8") as stream:
-            value = json.load(stream)
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from None
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: {error}") from None
-    if not isinstance(value, dict):
-        raise InputError(f"{path}: no JSON object")
-    return value
-
-
-def require(path, number, value, key, kinds):
-    """value[key], where it is there and of one of these kinds."""
-    if key not in value:
-        raise InputError(f"{path}:{number}: {key}: is missing")
-    found = value[key]
-    if not isinstance(found, kinds) or (isinstance(found, bool) and bool not in kinds):
-        raise InputError(f"{path}:{number}: {key}: has a value of the wrong kind")
-    if isinstance(found, float) and not math.isfinite(found):
-        raise InputError(f"{path}:{number}: {key}: is not finite")
-    return found
+    def stored(self, file, kinds, is_wanted=lambda row: True):
+        """The wanted rows of a study's file, which have these keys, or those that `kinds` names for a row. Raises Missing where
+        there is none."""
+        path, rows = self.path_of(file), []
+        for number, row in read_lines(path):
+            if is_wanted(row):
+                require_all(path, number, row, kinds(row) if callable(kinds) else kinds)
+                rows.append(row)
+        if not rows:
+            raise Missing(f"{file} holds no row.")
+        return rows
 
 
 class _Columns:
@@ -230,9 +199,9 @@ class _Columns:
 
     def add(self, path, number, line, shared):
         for column, key in zip(self.texts, _TEXTS):
-            value = line.get(key, "") if key in _OPTIONAL_TEXTS else require(path, number, line, key, (str,))
+            value = line.get(key, "") if key in _OPTIONAL_TEXTS else require(path, number, line, key, TEXT)
             if not isinstance(value, str):
-                require(path, number, line, key, (str,))
+                require(path, number, line, key, TEXT)
             column.append(shared.setdefault(value, value))
         for column, (name, key) in zip(self.numbers, _NUMBERS.items()):
             value = line.get(key)
@@ -251,9 +220,9 @@ class _Columns:
 def _read_samples(path):
     read, shared = {}, {}  # (method, nearest) -> columns; each text once
     for number, line in read_lines(path):
-        key = (require(path, number, line, "method", (str,)), line.get("nearest"))
+        key = (require(path, number, line, "method", TEXT), line.get("nearest"))
         if key[1] is not None:
-            require(path, number, line, "nearest", (int,))
+            require(path, number, line, "nearest", WHOLE)
         if key not in read:
             read[key] = _Columns()
         read[key].add(path, number, line, shared)
@@ -264,26 +233,17 @@ def _read_samples(path):
     return [columns.sample(method, nearest) for (method, nearest), columns in read.items()]
 
 
-_SHARES = ("mean_iou", "usable_share", "unsteady_share")  # absent where no scene has the measure
-_KNOWN_IF_ANY = ("lateral_median_m", "lateral_p95_m", "heading_median_rad", "heading_p95_rad")
+_ROW = {"method": TEXT, "false_positive_rate": NUMBER, "range": NUMBER, "scenes": WHOLE, "success_share": NUMBER, "share": (dict,),
+        "latency_ms": (dict,), "condition?": TEXT, "calibration?": (dict,)} | {f"{key}?": NUMBER for key in (
+            "mean_iou", "usable_share", "unsteady_share", "lateral_median_m", "lateral_p95_m", "heading_median_rad", "heading_p95_rad")}
+_LATENCY = dict.fromkeys(("median", "mean", "p95", "p99", "max", "shifted_geometric_mean"), NUMBER)
 
 
 def _read_rows(path):
     rows = []
     for number, row in read_lines(path):
-        for key, kinds in (("method", (str,)), ("false_positive_rate", (int, float)), ("range", (int, float)),
-                           ("scenes", (int,)), ("success_share", (int, float)), ("share", (dict,)),
-                           ("latency_ms", (dict,))):
-            require(path, number, row, key, kinds)
-        for key in ("median", "mean", "p95", "p99", "max", "shifted_geometric_mean"):
-            require(path, number, row["latency_ms"], key, (int, float))
-        for key in _SHARES + _KNOWN_IF_ANY:
-            if key in row:
-                require(path, number, row, key, (int, float))
-        if "condition" in row:
-            require(path, number, row, "condition", (str,))
-        if "calibration" in row:
-            require(path, number, row, "calibration", (dict,))
+        require_all(path, number, row, _ROW)
+        require_all(path, number, row["latency_ms"], _LATENCY)
         rows.append(row)
     if not rows:
         raise InputError(f"{path}: has no line")
@@ -341,7 +301,7 @@ def load_results(directory):
         return Results(directory, run, [], [], {folder: [] for folder in BESIDE}, {})
     if not os.path.exists(path("run.json")):
         raise InputError(f"{path('run.json')}: is missing; studies without a comparison are read from {', '.join(STUDIES)}")
-    run = read_object(path("run.json"))
+    run = read_json(path("run.json"))
     rows = _read_rows(path("results.jsonl"))
     samples = _read_samples(path("scores.jsonl"))
     _check_same_run(path("scores.jsonl"), rows, samples)
@@ -353,8 +313,8 @@ def load_results(directory):
     for stored in beside.values():
         stored.sort(key=lambda sample: (methods.index(sample.method), sample.nearest or math.inf))
     tracks_file = path("scenes.tracks.json")
-    tracks = read_object(tracks_file) if os.path.exists(tracks_file) else {}
-    runs_beside = [read_object(path(os.path.join(folder, "run.json"))) for folder in BESIDE
+    tracks = read_json(tracks_file) if os.path.exists(tracks_file) else {}
+    runs_beside = [read_json(path(os.path.join(folder, "run.json"))) for folder in BESIDE
                    if os.path.exists(path(os.path.join(folder, "run.json")))]
     order = _best_first(samples)  # of tables, legends and pictures; colours stay those of the order in the file
     rows.sort(key=lambda row: order.index(label_of(row["method"], row.get("nearest"))))

@@ -5,16 +5,13 @@ import functools
 
 import numpy as np
 
+from .summaries import quantile
+
+REAL_TIME_BUDGET_MS = 50.0
 CONFIDENCE = 0.95
 RESAMPLES = 2000
 GEOMETRIC_MEAN_SHIFT_MS = 1.0
 SMALLEST_MS = 1e-6  # a clock's tick keeps logarithms finite
-
-
-def quantile(values, share):
-    """Nearest rank: the smallest value that at least `share` of the sample does not exceed."""
-    ordered = np.sort(values)
-    return ordered[max(0, int(np.ceil(share * len(ordered))) - 1)]
 
 
 def shifted_geometric_mean(values, shift=GEOMETRIC_MEAN_SHIFT_MS):
@@ -38,8 +35,7 @@ def _track_index(tracks):
 
 
 def _interval(estimates):
-    tail = 100.0 * (1.0 - CONFIDENCE) / 2.0
-    return tuple(float(end) for end in np.percentile(estimates, [tail, 100.0 - tail]))
+    return tuple(float(quantile(estimates, (1.0 + sign * CONFIDENCE) / 2.0)) for sign in (-1, 1))
 
 
 def mean_interval(values, tracks):
@@ -104,3 +100,44 @@ def performance_profiles(times):
     ratios = np.full(times.shape, np.inf)
     np.divide(times, best, out=ratios, where=solvable & np.isfinite(times))
     return np.sort(ratios, axis=0)
+
+
+def headline_measure(samples):
+    """Usable; success in results of earlier versions, which do not have it."""
+    return "usable" if any(sample.has("usable") for sample in samples) else "success"
+
+
+def share_and_interval(sample, name):
+    """Mean and interval of a measure where it is known; None twice where it never is."""
+    part, values = sample.measured(name)
+    return (float(values.mean()), mean_interval(values, part.track)) if len(values) else (None, None)
+
+
+def leaders_of(samples, name):
+    """(mean, samples): the highest mean of a measure, and all that the tracks do not tell from it by the paired difference.
+    None without values."""
+    means = [(share, sample) for sample in samples for share, _ in [share_and_interval(sample, name)] if share is not None]
+    if not means:
+        return None
+    best_mean, best = max(means, key=lambda pair: pair[0])
+    level = [best]
+    for mean, sample in means:
+        if sample is best:
+            continue
+        (a, of_best), (b, others) = best.measured(name), sample.measured(name)
+        rows, other_rows = paired(a, b)
+        interval = mean_interval(of_best[rows] - others[other_rows], a.track[rows]) if len(rows) else None
+        if mean == best_mean or (interval and interval[0] <= 0.0 <= interval[1]):
+            level.append(sample)
+    return best_mean, level
+
+
+def fastest_of(samples):
+    """The one with the least geometric mean of its latencies over the scenes that all have, so that no paired ratio
+    to it is below 1; over its own scenes where there is none in common."""
+    common = set.intersection(*(set(sample.scene) for sample in samples))
+
+    def mean_log(sample):
+        kept = np.array([scene in common for scene in sample.scene]) if common else np.ones(len(sample), bool)
+        return float(np.mean(np.log(np.maximum(sample.latency[kept], SMALLEST_MS))))
+    return min(samples, key=mean_log)

@@ -5,7 +5,6 @@ import pkgutil
 from html import escape
 
 from . import experiments, filters, gallery, headline, provenance
-from .drawing import MARKS
 from .experiment import blocks
 from .load import CATEGORIES
 from .progress import Progress
@@ -78,7 +77,7 @@ def _viewer(results, data):
               for track, boundaries in results.tracks.items() if track in shown}
     methods = [{"label": sample.label, "color": results.methods.index(sample.method) % METHOD_COLORS}
                for sample in results.samples]
-    content = {"methods": methods, "marks": MARKS, "longest_gap": 100 * data.longest_gap_m,
+    content = {"methods": methods, "longest_gap": 100 * data.longest_gap_m,
                "usual_width": 100 * data.usual_width_m, "tracks": tracks, "laps": data.laps, "start": data.start,
                "frames": data.frames,
                "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES],
@@ -176,13 +175,12 @@ def render(results, published, tracks=()):
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark"><title>conelane: lanes between cones, compared</title>
-<link rel="icon" href="data:,"><style>{_asset("style.css")}{gallery.style()}</style></head>
+<link rel="icon" href="data:,"><style>{_asset("style.css")}</style></head>
 <body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
 <button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
 <main><div class="intro">{_intro(results, data)}</div>
 {body}</main>
-<script>{_asset("tables.js")}</script>
-<script>{_asset("viewer.js")}</script>
-<script>{_asset("race.js")}</script>
+<script type="application/json" id="marks">{_asset("marks.json")}</script>
+{"".join(f"<script>{_asset(name)}</script>" for name in ("tables.js", "drawing.js", "viewer.js", "race.js"))}
 </body></html>
 """

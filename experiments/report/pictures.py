@@ -1,13 +1,15 @@
 """The main figures as PNG, for where no page can be shown."""
 
-from .experiments import latency, quality, same_cone_set
+from .experiments.comparison import by_rate_figure, latency_figure
+from .experiments.speed import growth_figure
+from .load import Missing
 from .theme import picture_colors, png_of
 
-_MAIN = (("usable.png", "Usable lanes", quality.usable_figure),
-         ("latency.png", "Latency", latency.by_rate_figure),
-         ("success.png", "Success, as the CLC paper counts", quality.success_figure),
-         ("iou.png", "Overlap with the ground truth", quality.iou_figure),
-         ("growth.png", "Latency by cone-set size", same_cone_set.growth_figure))
+_MAIN = (("usable.png", "Usable lanes", lambda results: by_rate_figure(results, "usable [%]", "usable")),
+         ("latency.png", "Latency", latency_figure),
+         ("success.png", "Success, as the CLC paper counts", lambda results: by_rate_figure(results, "success [%]", "success")),
+         ("iou.png", "Overlap with the ground truth", lambda results: by_rate_figure(results, "mean IoU [%]", "iou")),
+         ("growth.png", "Latency by cone-set size", growth_figure))
 
 
 def pictures(results):
@@ -18,8 +20,10 @@ def pictures(results):
     results = results.under(results.main_condition)
     with picture_colors():
         for name, title, figure_of in _MAIN:
-            figure = figure_of(results)
-            if figure is not None:
-                figure.axes[0].set_title(title, loc="left", fontsize=10)
-                made.append((name, png_of(figure)))
+            try:
+                figure, axes = figure_of(results)
+            except Missing:
+                continue
+            axes.set_title(title, loc="left", fontsize=10)
+            made.append((name, png_of(figure)))
     return made

@@ -4,6 +4,7 @@ checked them all, and gives a place of its own for PICTURE."""
 
 import json
 import math
+import pkgutil
 import sys
 import warnings
 
@@ -11,11 +12,13 @@ import numpy as np
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from .drawing import MARKS, driven_ahead, in_car_frame, solid_and_bridged
-from .load import InputError, label_of, read_lines
-from .scenes import boundary_points, frame_of, sides_of
+from .records import InputError, label_of, read_json, read_lines
+from .scenes import boundary_points, frame_of, in_car_frame, sides_of
 from .theme import METHOD_COLORS, SURFACE, picture_colors, pyplot
 
+# How each part of a drawing is marked, here and in drawing.js: sizes, widths and dashes in pixels of the viewer, colours
+# as names of style.css.
+MARKS = json.loads(pkgutil.get_data(__package__, "marks.json"))
 _POINTS = 0.75  # of a pixel
 _ARC_EVERY_M = 10.0
 _MARGIN_M = 1.5
@@ -39,16 +42,11 @@ def _color(name):
     return f"conelane:{name}"
 
 
-def _line_style(kind, base=None):
+def _line_style(mark):
     """Width and dashes of a mark, in matplotlib's units: points, and dashes as multiples of the width."""
-    mark = MARKS[kind]
-    width = mark.get("width", base or MARKS["lane"]["width"])
-    style = {"linewidth": _POINTS * width}
-    if "dash" in mark:
-        style["linestyle"] = (0, [part / width for part in mark["dash"]])
-    if "color" in mark:
-        style["color"] = _color(mark["color"])
-    return style
+    width = mark.get("width", MARKS["lane"]["width"])
+    dashes = {"linestyle": (0, [part / width for part in mark["dash"]])} if "dash" in mark else {}
+    return {"linewidth": _POINTS * width} | dashes | ({"color": _color(mark["color"])} if "color" in mark else {})
 
 
 class _Panel:
@@ -61,7 +59,7 @@ class _Panel:
 
     def line(self, points, kind, color=None, **style):
         if len(points) > 1:
-            style = {"zorder": 2} | _line_style(kind) | ({"color": color} if color else {}) | style
+            style = {"zorder": 2} | _line_style(MARKS[kind]) | ({"color": color} if color else {}) | style
             drawn, = self.axes.plot(*_columns(points), solid_joinstyle="round", **style)
             self.shown.setdefault(kind, drawn)
 
@@ -99,34 +97,38 @@ def _columns(points):
 
 
 def _band(panel, cones, truth):
-    left, right, closed = [cones[i] for i in truth[0]], [cones[i] for i in truth[1]], truth[2]
-    if not left or not right:
+    left, right = cones[truth[0]], cones[truth[1]]
+    if not len(left) or not len(right):
         return
-    if closed:  # the ring between both, the inner one run backwards
+    if truth[2]:  # the ring between both, the inner one run backwards
         rings = [np.vstack([left, left[:1]]), np.vstack([right[::-1], right[-1:]])]
         codes = [code for ring in rings for code in [Path.MOVETO] + [Path.LINETO] * (len(ring) - 1)]
         patch = PathPatch(Path(np.vstack(rings), codes), linewidth=0, zorder=1)
         panel.axes.add_patch(patch)
     else:
-        patch, = panel.axes.fill(*_columns(left + right[::-1]), linewidth=0, zorder=1)
+        patch, = panel.axes.fill(*np.vstack([left, right[::-1]]).T, linewidth=0, zorder=1)
     patch.set(color=_color(MARKS["band"]["color"]), alpha=MARKS["band"]["opacity"], linewidth=0)
     panel.shown["band"] = patch
 
 
 def _lane(panel, cones, lane, pose, color, width, longest_gap_m):
-    """`lane`: sides and closed as in a frame, and what is drawn beside."""
+    """`lane`: sides and closed as in a frame, and what is drawn beside. Steps longer than `longest_gap_m` are bridged."""
+    gap = [(np.nan, np.nan)]
     for side in lane["sides"]:
-        points = _of_frame(side["p"]) if isinstance(side, dict) else [cones[i] for i in side]
-        solid, bridged = solid_and_bridged([tuple(point) for point in points], lane["closed"], longest_gap_m)
-        for piece in solid:
-            panel.line(piece, "lane", color, linewidth=width)
-        for piece in bridged:
-            panel.line(piece, "bridged", color, linewidth=width)
+        line = list(_of_frame(side["p"]) if isinstance(side, dict) else cones[side])
+        line += line[:1] if lane["closed"] and len(line) > 2 else []
+        solid, bridged = line[:1], []
+        for start, end in zip(line, line[1:]):
+            is_bridged = math.dist(start, end) > longest_gap_m
+            solid += gap + [end] if is_bridged else [end]
+            bridged += [start, end] + gap if is_bridged else []
+        panel.line(solid, "lane", color, linewidth=width)
+        panel.line(bridged, "bridged", color, linewidth=width)
     beside = lane["beside"]
     if "inferred" in beside:
-        panel.line(_up(in_car_frame(pose, np.array(beside["inferred"]).reshape(-1, 2))), "inferred", color, linewidth=width)
+        panel.line(_up(in_car_frame(pose, beside["inferred"])), "inferred", color, linewidth=width)
     if "trusted_end" in beside:
-        panel.line(_up(in_car_frame(pose, np.array(beside["trusted_end"]))), "trusted", color, zorder=3)
+        panel.line(_up(in_car_frame(pose, beside["trusted_end"])), "trusted", color, zorder=3)
 
 
 def _candidates(panel, cones, candidates, color):
@@ -150,19 +152,11 @@ def _said(line):
 
 
 def _legend(figure, panel, lanes):
-    """Below: a row of the lanes, then what the marks mean; the order is that of marks.json."""
-    handles, words = [], []
-    for handle, text in lanes:
-        handles.append(handle)
-        words.append(text)
-    for kind, mark in MARKS.items():
-        if kind in panel.shown and "word" in mark:
-            handles.append(panel.shown[kind])
-            words.append(mark["word"])
-    rows = math.ceil(len(handles) / _LEGEND_COLUMNS)
-    if handles:
-        figure.legend(handles, words, loc="lower center", ncol=min(_LEGEND_COLUMNS, len(handles)), handlelength=2.2)
-    return _LEGEND_ROW_IN * rows
+    """Below: a row of the lanes, then what the marks mean; the order is that of marks.json. Its height in inches."""
+    entries = lanes + [(panel.shown[kind], mark["word"]) for kind, mark in MARKS.items() if kind in panel.shown and "word" in mark]
+    if entries:
+        figure.legend(*zip(*entries), loc="lower center", ncol=min(_LEGEND_COLUMNS, len(entries)), handlelength=2.2)
+    return _LEGEND_ROW_IN * math.ceil(len(entries) / _LEGEND_COLUMNS)
 
 
 def _limits(panels, points, reach):
@@ -180,8 +174,7 @@ def _limits(panels, points, reach):
 def draw(scene_file, tracks_file, lanes_file, how):
     """The figure."""
     (number, scene), = read_lines(scene_file)
-    with open(tracks_file, encoding="utf-8") as stream:
-        boundaries = json.load(stream).get(scene.get("track", ""), {})
+    boundaries = read_json(tracks_file).get(scene.get("track", ""), {})
     frame, pose, index_of = frame_of(scene_file, number, scene, boundary_points(boundaries), how["noise_m"])
     lines = list(read_lines(lanes_file))
     lanes = [{"sides": sides_of(lanes_file, number, line, pose, index_of), "closed": line.get("closed", False),
@@ -197,7 +190,7 @@ def draw(scene_file, tracks_file, lanes_file, how):
     found = panels[-1]
     if how["with_truth"]:
         _band(found, cones, frame["g"])
-    found.line(_up(driven_ahead(boundaries, pose)), "driven")
+    found.line(_up(in_car_frame(pose, boundaries.get("driven", []))), "driven")
     handles = []
     mark = MARKS["lane"]
     wider = min(mark["wider"], (mark["widest"] - mark["width"]) / max(1, len(lanes) - 1))
@@ -228,11 +221,9 @@ def draw(scene_file, tracks_file, lanes_file, how):
 def main(arguments):
     scene_file, tracks_file, lanes_file, how_file, picture = arguments
     warnings.simplefilter("ignore")
-    with open(how_file, encoding="utf-8") as stream:
-        how = json.load(stream)
     try:
         with picture_colors(), pyplot.rc_context({"svg.hashsalt": "conelane"}):
-            figure = draw(scene_file, tracks_file, lanes_file, how)
+            figure = draw(scene_file, tracks_file, lanes_file, read_json(how_file))
             metadata = {"Date": None} if picture.endswith(".svg") else {"Software": None}
             figure.savefig(picture, dpi=160, facecolor=SURFACE, metadata=metadata)
     except InputError as error:

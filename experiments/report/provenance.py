@@ -3,7 +3,7 @@
 from html import escape
 
 from .conditions import whole
-from .load import label_of
+from .records import label_of
 from .measures import RESAMPLES
 
 

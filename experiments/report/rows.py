@@ -1,8 +1,7 @@
 """What the tables with a row per method, condition, rate and range share."""
 
-from .load import label_of
-from .tables import Cell, Column, method_cell, percent, text
-
+from .records import label_of
+from .tables import Cell, Column, column, method_cell, percent, text
 
 CATEGORY_NOTE = ("Ground truth: exactly the same cones. Near: does not diverge and is long enough, but has other "
                  "cones. Too short: does not diverge, but is below 75 % of the ground truth's length.")
@@ -27,27 +26,29 @@ def note_on_limit(results):
     return f" Limit: the time limit of {limit:g} ms ended the search, which would have taken longer."
 
 
+def label(row):
+    return label_of(row["method"], row.get("nearest"))
+
+
+def condition_column(results, of=lambda row: row.get("condition", "")):
+    """Where conditions are named."""
+    return [column("condition", text, of)] if results.conditions != [""] else []
+
+
 def keys(results):
-    condition = [Column("condition", "text")] if results.conditions != [""] else []
-    return [Column("method", "text")] + condition + [Column("false positives %"), Column("range m"), Column("scenes")]
+    """The first columns of a table of rows of results.jsonl."""
+    return [Column("method", lambda row: method_cell(results, row["method"], label(row)), "text"), *condition_column(results),
+            column("false positives %", percent, lambda row: row["false_positive_rate"]),
+            Column("range m", lambda row: Cell(f"{row['range']:g}", row["range"])),
+            Column("scenes", lambda row: scenes_cell(row["scenes"], row.get("trained_on", 0)))]
 
 
-def key_cells(results, row):
-    label = label_of(row["method"], row.get("nearest"))
-    condition = [text(row.get("condition", ""))] if results.conditions != [""] else []
-    return [method_cell(results.methods, row["method"], label)] + condition + [
-        percent(row["false_positive_rate"]), Cell(f"{row['range']:g}", row["range"]),
-        scenes_cell(row["scenes"], row.get("trained_on", 0))]
-
-
-def attributes(results):
+def attributes(row):
     """What the filters of the page go by."""
-    return [{"method": label_of(row["method"], row.get("nearest")), "condition": row.get("condition", ""),
-             "rate": row["false_positive_rate"], "range": row["range"]} for row in results.rows]
+    return {"method": label(row), "condition": row.get("condition", ""), "rate": row["false_positive_rate"], "range": row["range"]}
 
 
 def part(results, row):
     """The scores that a row of results.jsonl sums up."""
-    label = label_of(row["method"], row.get("nearest"))
-    sample = next(sample for sample in results.samples if sample.label == label)
+    sample = next(sample for sample in results.samples if sample.label == label(row))
     return sample.at(row["false_positive_rate"], row["range"], row.get("condition", ""))

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .drawing import in_car_frame
-from .load import CATEGORIES, CAUSES, InputError, label_of, read_lines, require
+from .load import CATEGORIES, CAUSES
+from .measures import headline_measure
+from .records import NUMBER, TEXT, InputError, label_of, read_lines, require
 
 MOST_BYTES = 9_000_000  # of all frames as JSON
 _BYTES_PER_CONE = 10
@@ -69,38 +70,28 @@ def _poses(scenes_file):
     return places
 
 
-def _is_wrong(part):
-    return part.usable == 0.0 if part.has("usable") else part.success == 0.0
-
-
-def _worst(results, places):
-    """The worst of the scenes on which a method's lane is not usable (no success in results of earlier versions), for
-    each method and condition: by IoU, an unknown one last; ties in order of scene ids. At most WORST_OF_A_TRACK of one
-    track, and these WORST_APART_M apart."""
-    worst = {}
+def _wrong(results):
+    """The scenes on which a method's lane is not usable (no success in results of earlier versions), as (scene, track), for each
+    method and condition: by IoU, an unknown one last; ties in order of scene ids."""
+    found = {}
     for sample in results.samples:
         for condition in results.conditions:
             part = sample.at(condition=condition)
-            iou = np.where(np.isnan(part.iou), 2.0, part.iou)
-            chosen, of_track = [], {}
-            for i in sorted(np.flatnonzero(_is_wrong(part)), key=lambda i: (iou[i], part.scene[i])):
-                place, others = places.get(part.scene[i]), of_track.setdefault(part.track[i], [])
-                if place is None:
-                    continue
-                if len(others) < WORST_OF_A_TRACK and all(math.dist(place, other) >= WORST_APART_M for other in others):
-                    others.append(place)
-                    chosen.append(part.scene[i])
-                if len(chosen) == WORST:
-                    break
-            if chosen:
-                worst[sample.label, condition] = chosen
-    return worst
+            bad = getattr(part, headline_measure([part])) == 0.0
+            found[sample.label, condition] = [(scene, track) for _, scene, track in sorted(zip(
+                np.where(np.isnan(part.iou), 2.0, part.iou)[bad], part.scene[bad], part.track[bad]))]
+    return found
 
 
-def _wrong(results):
-    """How many scenes there are to choose the worst from."""
-    return {(sample.label, condition): int(np.sum(_is_wrong(sample.at(condition=condition))))
-            for sample in results.samples for condition in results.conditions}
+def _worst(wrong, places):
+    """The first WORST of these: at most WORST_OF_A_TRACK of one track, and these WORST_APART_M apart."""
+    chosen, of_track = [], {}
+    for scene, track in wrong:
+        place, others = places.get(scene), of_track.setdefault(track, [])
+        if place and len(others) < WORST_OF_A_TRACK and all(math.dist(place, other) >= WORST_APART_M for other in others):
+            others.append(place)
+            chosen.append(scene)
+    return chosen[:WORST]
 
 
 class _Laps:
@@ -142,9 +133,8 @@ def _chosen_laps(results, laps, tracks):
     while there is room."""
     order = laps.by_interest(results)
     if tracks:
-        known = {lap[0] for lap in order}
         for track in tracks:
-            if track not in known:
+            if track not in {lap[0] for lap in order}:
                 raise InputError(f"--viewer: there is no track '{track}' in {results.path('scores.jsonl')}")
         chosen = [lap for lap in order if lap[0] in tracks]
         return chosen, max(1, math.ceil(sum(laps.bytes_of[lap] for lap in chosen) / MOST_BYTES))
@@ -154,6 +144,12 @@ def _chosen_laps(results, laps, tracks):
             size += laps.bytes_of[lap]
             chosen.append(lap)
     return chosen, 1
+
+
+def in_car_frame(pose, positions):
+    """Positions [m] as seen from a pose: ahead and to the left."""
+    x, y, yaw = pose
+    return (np.array(positions, dtype=float).reshape(-1, 2) - (x, y)) @ np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
 
 
 def _centimetres(value):
@@ -209,10 +205,9 @@ def sides_of(path, number, line, pose, index_of):
     a centre line alone is drawn as a left side."""
     def flat(key):
         try:
-            positions = np.array(line[key], dtype=float).reshape(-1, 2)
+            return {"p": _flat(in_car_frame(pose, line[key]))}
         except (TypeError, ValueError) as error:
             raise InputError(f"{path}:{number}: {key}: no list of points ({error})") from None
-        return {"p": _flat(in_car_frame(pose, positions))}
 
     if "left_points" in line:
         return [flat("left_points"), flat("right_points")]
@@ -224,19 +219,18 @@ def sides_of(path, number, line, pose, index_of):
         raise InputError(f"{path}:{number}: cone {error} is not in the scene") from None
 
 
-def _known_int(value):
-    return None if math.isnan(value) else int(value)
-
-
 def _add_answers(results, lanes_files, frames, poses, indices):
     slots = {sample.label: slot for slot, sample in enumerate(results.samples)}
     scores = {sample.label: {scene: row for row, scene in enumerate(sample.scene) if scene in frames}
               for sample in results.samples}
+    def known_int(value):
+        return None if math.isnan(value) else int(value)
+
     causes = list(CAUSES)
     for path in lanes_files:
         for number, line in read_lines(path, frames):
-            scene = require(path, number, line, "scene", (str,))
-            label = label_of(require(path, number, line, "method", (str,)), line.get("nearest"))
+            scene = require(path, number, line, "scene", TEXT)
+            label = label_of(require(path, number, line, "method", TEXT), line.get("nearest"))
             row = scores.get(label, {}).get(scene)
             if row is None:
                 continue
@@ -245,9 +239,9 @@ def _add_answers(results, lanes_files, frames, poses, indices):
             frames[scene]["a"][slots[label]] = sides_of(path, number, line, poses[scene], indices[scene]) + [
                 int(bool(line.get("closed", False))), float(f"{sample.latency[row]:.4g}"),
                 None if math.isnan(iou) else round(float(iou), 3), CATEGORIES.index(sample.category[row]),
-                _known_int(sample.accurate[row]), _known_int(sample.usable[row]),
+                known_int(sample.accurate[row]), known_int(sample.usable[row]),
                 causes.index(cause) if cause else None] + [
-                    float(f"{require(path, number, line, key, (int, float)):.4g}") if key in line else None
+                    float(f"{require(path, number, line, key, NUMBER):.4g}") if key in line else None
                     for key in ("confidence", "trusted_m")]
 
 
@@ -287,14 +281,9 @@ def _read_frames(results, scenes_file, wanted, noise_of):
 
 def _turning_rad(frame):
     """How far the ground truth turns, the sum of its turns left and right; 0 where it has no boundaries."""
-    points = np.array(frame["c"], dtype=float).reshape(-1, 2)
-    turning = 0.0
-    for side in frame["g"][:2]:
-        steps = np.diff(points[side], axis=0)
-        headings = np.arctan2(steps[:, 1], steps[:, 0])
-        turns = np.abs((np.diff(headings) + np.pi) % (2 * np.pi) - np.pi)
-        turning = max(turning, float(turns.sum()))
-    return turning
+    points = np.array(frame["c"], dtype=float).reshape(-1, 2) @ (1, 1j)
+    steps = [np.diff(points[side]) for side in frame["g"][:2]]
+    return max(float(np.abs(np.angle(one[1:] * one[:-1].conj())).sum()) for one in steps)
 
 
 def _start(results, frames, lap_list):
@@ -308,13 +297,8 @@ def _start(results, frames, lap_list):
         share = sum(answers) / len(answers)
         return ((lap["condition"], lap["rate"]) == (results.main_condition, rate), answers[0], share >= 0.5, share < 1.0,
                 round(_turning_rad(frames[scene]), 1))
-    best = None
-    for lap in lap_list:
-        for scene in lap["scenes"]:
-            of_scene = rank(lap, scene)
-            if best is None or of_scene > best[0]:
-                best = (of_scene, scene)
-    return best[1] if best else ""
+    scenes = [(lap, scene) for lap in lap_list for scene in lap["scenes"]]
+    return max(scenes, key=lambda one: rank(*one), default=(None, ""))[1]
 
 
 def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual_width_m=3.5):
@@ -332,7 +316,8 @@ def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual
         raise InputError(f"{results.path('run.json')}: noise: has a value of the wrong kind") from None
     noise_m = {condition["name"]: condition["noise_m"] for condition in conditions}
     laps = _Laps(results)
-    worst = _worst(results, _poses(scenes_file))
+    places, wrong = _poses(scenes_file), _wrong(results)
+    worst = {key: chosen for key, of_key in wrong.items() if (chosen := _worst(of_key, places))}
     picked = {scene for scenes in worst.values() for scene in scenes}
     chosen, stride = _chosen_laps(results, laps, tracks)
     wanted = {scene for lap in chosen for scene in laps.scenes[lap][::stride]} | picked
@@ -344,5 +329,5 @@ def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual
                  "scenes": [scene for scene in scenes if scene in frames]}
                 for (track, condition, rate, range_m), scenes in laps.scenes.items()]
     lap_list = [lap for lap in lap_list if lap["scenes"]]
-    return SceneData(frames, lap_list, _start(results, frames, lap_list), laps.scene_count, len(chosen),
-                     len(laps.scenes), stride, worst, _wrong(results), longest_gap_m=longest_gap_m, usual_width_m=usual_width_m)
+    return SceneData(frames, lap_list, _start(results, frames, lap_list), laps.scene_count, len(chosen), len(laps.scenes), stride, worst,
+                     {key: len(of_key) for key, of_key in wrong.items()}, longest_gap_m=longest_gap_m, usual_width_m=usual_width_m)

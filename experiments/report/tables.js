@@ -15,8 +15,8 @@
   });
   // Ink on a dark ground does not print.
   let shown;
-  addEventListener("beforeprint", () => { shown = root.dataset.theme; root.dataset.theme = "light"; });
-  addEventListener("afterprint", () => { if (shown) root.dataset.theme = shown; else delete root.dataset.theme; });
+  addEventListener("beforeprint", () => { shown = root.dataset.theme; root.dataset.theme = "light"; announce(); });
+  addEventListener("afterprint", () => { if (shown) root.dataset.theme = shown; else delete root.dataset.theme; announce(); });
 
   const compare = (a, b) => {
     if (a === undefined || b === undefined) return (a === undefined) - (b === undefined); // unknown last

@@ -1,10 +1,8 @@
 "use strict";
-// The scene viewer. Frames are in the car's frame, centimetres: x ahead, y to the left; the car looks up.
+// The scene viewer.
 (() => {
-  const source = document.getElementById("scene-data");
-  if (!source) return;
-  const data = JSON.parse(source.textContent);
-  const marks = data.marks; // sizes, widths and dashes in pixels, colours as names
+  const { data, marks, color, prepare, trace, positions, strokeTrack, drawFrame } = drawing;
+  if (!data) return;
   const element = (name) => document.getElementById("view-" + name);
   const box = document.getElementById("viewer");
   const scene = element("scene"), map = element("map"), tip = element("tip");
@@ -12,24 +10,6 @@
   const trackFrames = new Map(); // of each track, what its map shows
 
   const frame = () => data.frames[state.lap.scenes[state.pose]];
-  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-  /// Canvas sized to the screen's pixels, and its context in CSS pixels.
-  const prepare = (canvas) => {
-    const ratio = devicePixelRatio || 1;
-    const { clientWidth: width, clientHeight: height } = canvas;
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    const context = canvas.getContext("2d");
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.lineJoin = "round";
-    return { context, width, height };
-  };
-
-  const trace = (context, points, closed) => {
-    points.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
-    if (closed && points.length) context.closePath();
-  };
 
   const fit = (width, height) => {
     const reach = 100 * state.lap.range;
@@ -37,11 +17,6 @@
     const below = Math.max(0.05 * reach * scale, 18); // room for the car and the distances
     return { scale, x: (ahead, left) => width / 2 - left * scale, y: (ahead) => height - below - ahead * scale };
   };
-
-  const positions = (flat, view) =>
-    Array.from({ length: flat.length / 2 }, (_, i) => [view.x(flat[2 * i], flat[2 * i + 1]), view.y(flat[2 * i])]);
-  const placed = (view) => positions(frame().c, view);
-  const missed = (view) => positions(frame().m || [], view);
 
   const drawRange = (context, view) => {
     const reach = 100 * state.lap.range;
@@ -56,154 +31,15 @@
     }
   };
 
-  /// The annotated boundaries, and of a run the path that was driven.
-  const drawBoundaries = (context, view) => {
-    const track = data.tracks[state.lap.track];
-    if (!track) return;
-    const [px, py, yaw] = frame().p;
-    const cos = Math.cos(yaw / 1000), sin = Math.sin(yaw / 1000);
-    const drawDashed = (line, stroke, width, dash, closed) => {
-      const points = [];
-      for (let i = 0; i < line.length; i += 2) {
-        const dx = line[i] - px, dy = line[i + 1] - py;
-        const ahead = cos * dx + sin * dy;
-        points.push([view.x(ahead, cos * dy - sin * dx), view.y(ahead)]);
-      }
-      context.strokeStyle = stroke;
-      context.lineWidth = width;
-      context.setLineDash(dash);
-      context.beginPath();
-      trace(context, points, closed);
-      context.stroke();
-    };
-    const { boundary, driven } = marks;
-    for (const side of [track.left, track.right])
-      drawDashed(side, color("--" + boundary.color), boundary.width, boundary.dash, track.closed);
-    drawDashed(track.driven, color("--" + driven.color), driven.width, driven.dash, false);
-    context.setLineDash([]);
-  };
-
-  /// A dot, cross or ring, as marks.json has it.
-  const drawMark = (context, [x, y], mark) => {
-    const { shape, radius } = mark;
-    context.lineWidth = mark.width || 1;
-    context.strokeStyle = context.fillStyle = color("--" + mark.color);
-    context.beginPath();
-    if (shape === "cross") {
-      context.moveTo(x - radius, y - radius); context.lineTo(x + radius, y + radius);
-      context.moveTo(x + radius, y - radius); context.lineTo(x - radius, y + radius);
-      context.stroke();
-    } else {
-      context.arc(x, y, radius, 0, 2 * Math.PI);
-      if (shape === "dot") context.fill();
-      else context.stroke();
-    }
-  };
-
-  /// A boundary, dashed where it bridges a gap.
-  const strokeSide = (context, points, closed, longest) => {
-    const line = closed && points.length > 2 ? [...points, points[0]] : points;
-    const far = ([ax, ay], [bx, by]) => Math.hypot(bx - ax, by - ay) > longest;
-    for (const bridged of [false, true]) {
-      context.setLineDash(bridged ? marks.bridged.dash : []);
-      context.beginPath();
-      for (let i = 1; i < line.length; ++i) {
-        if (far(line[i - 1], line[i]) !== bridged) continue;
-        if (i === 1 || bridged || far(line[i - 2], line[i - 1])) context.moveTo(...line[i - 1]);
-        context.lineTo(...line[i]);
-      }
-      context.stroke();
-    }
-    context.setLineDash([]);
-  };
-
-  /// A boundary beside one that is known alone, at the usual width.
-  const strokeInferred = (context, points, known, width) => {
-    const left = known === 0 ? -width : width;
-    context.setLineDash(marks.inferred.dash);
-    context.beginPath();
-    trace(context, points.map(([x, y], i) => {
-      const [ax, ay] = points[Math.max(0, i - 1)], [bx, by] = points[Math.min(points.length - 1, i + 1)];
-      const length = Math.hypot(bx - ax, by - ay) || 1;
-      return [x + left * (by - ay) / length, y - left * (bx - ax) / length];
-    }), false);
-    context.stroke();
-    context.setLineDash([]);
-  };
-
-  /// Where a boundary has that length; its end where it is shorter.
-  const pointAt = (points, length) => {
-    for (let i = 1; i < points.length; ++i) {
-      const [ax, ay] = points[i - 1], [bx, by] = points[i];
-      const step = Math.hypot(bx - ax, by - ay);
-      if (step >= length && step > 0) return [ax + (bx - ax) * length / step, ay + (by - ay) * length / step];
-      length -= step;
-    }
-    return points[points.length - 1];
-  };
-
-  /// Across the lane, where it is trusted no farther.
-  const strokeTrusted = (context, sides, length) => {
-    context.lineWidth = marks.trusted.width;
-    context.beginPath();
-    trace(context, sides.map((points) => pointAt(points, length)), false);
-    context.stroke();
-  };
-
   const drawScene = () => {
     const { context, width, height } = prepare(scene);
-    const view = fit(width, height), current = frame(), points = placed(view);
-    const at = (indices) => indices.map((i) => points[i]);
-    /// A side of an answer: indices of cones, or positions of its own.
-    const side = (one) => (Array.isArray(one) ? at(one) : positions(one.p, view));
+    const view = fit(width, height), track = data.tracks[state.lap.track];
     drawRange(context, view);
-    drawBoundaries(context, view);
-
-    const [left, right, closed] = current.g;
-    context.fillStyle = color("--" + marks.band.color);
-    context.globalAlpha = marks.band.opacity;
-    context.beginPath();
-    if (closed) {
-      trace(context, at(left), true);
-      trace(context, at(right), true);
-    } else {
-      trace(context, [...at(left), ...at(right).reverse()], true);
+    if (track) { // the annotated boundaries, and of a run the path that was driven
+      for (const side of [track.left, track.right]) strokeTrack(context, view, frame(), side, marks.boundary, track.closed);
+      strokeTrack(context, view, frame(), track.driven, marks.driven, false);
     }
-    context.fill("evenodd");
-    context.globalAlpha = 1;
-
-    // Lanes that lie on one another show as stripes: the first ones are broader.
-    const visible = data.methods.map((_, i) => i).filter((i) => current.a[i] && state.shown[i]);
-    const wider = Math.min(marks.lane.wider, (marks.lane.widest - marks.lane.width) / Math.max(1, visible.length - 1));
-    visible.forEach((i, place) => {
-      const answer = current.a[i];
-      context.lineWidth = marks.lane.width + wider * (visible.length - 1 - place);
-      const sides = answer.slice(0, 2).map(side), trusted = answer[10];
-      const isLine = sides[1].length === 0 && !Array.isArray(answer[0]); // a centre line alone
-      const own = color("--m" + data.methods[i].color);
-      const ofSide = (which) => (visible.length > 1 || isLine ? own : color(which === 0 ? "--left" : "--right"));
-      sides.forEach((points, which) => {
-        context.strokeStyle = ofSide(which);
-        strokeSide(context, points, answer[2], data.longest_gap * view.scale);
-      });
-      const known = sides.findIndex((points) => points.length > 1);
-      if (known >= 0 && sides[1 - known].length === 0) {
-        context.strokeStyle = ofSide(1 - known);
-        strokeInferred(context, sides[known], known, data.usual_width * view.scale);
-      }
-      context.strokeStyle = own;
-      if (trusted !== null && sides.every((points) => points.length > 1))
-        strokeTrusted(context, sides, 100 * trusted * view.scale);
-    });
-
-    const cones = points.length - current.f;
-    points.forEach((point, i) => drawMark(context, point, i < cones ? marks.cone : marks.false));
-    for (const point of missed(view)) drawMark(context, point, marks.missed); // what the car does not see is hollow
-
-    context.fillStyle = color("--" + marks.car.color);
-    context.beginPath();
-    trace(context, marks.car.outline.map(([x, y]) => [view.x(0, 0) + x, view.y(0) + y]), true);
-    context.fill();
+    drawFrame(context, view, frame(), data.methods.map((_, i) => i).filter((i) => state.shown[i]));
   };
 
   /// Map of the whole track: world coordinates, its poses in order.

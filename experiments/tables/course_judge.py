@@ -13,16 +13,21 @@ were seen. The power that suits the other families best is taken.
 The judge answers the lane that has at most one wrong cone with the highest probability. `expected` is the mean of this probability, `attained`
 the share of the scenes in which it is so. The true lane is always among the lanes, also where the beam search loses it. The other checks of
 `accurate` are left to `conelane score`.
+
+A place is a complex number, ahead + left * i, in metres; a lane is a pair of tuples of cones, left and right.
 """
 
+import cmath
 import json
 import math
 import os
 import random
 import sys
-from collections import defaultdict
+from collections import Counter, defaultdict
+from dataclasses import dataclass
 
 import numpy as np
+from cells import lines_of, read_json, rounded
 
 CONTEXT, NEAREST = 24, 12
 WIDEST_M = 6.5
@@ -37,41 +42,38 @@ STRAY = (0.02, 2.0**2)  # weight and variance of a wide component, for the same 
 
 
 class Density:
-    """Density of a point in the plane given features: a mixture of normal distributions around a linear regression."""
+    """Density of a place given features: a mixture of normal distributions around a linear regression."""
 
     def __init__(self, weights, components):
-        self.weights = weights  # a row for x, a row for y
-        self.components = components  # (share, mean x, mean y, variance x, covariance, variance y)
+        self.weights = np.array(weights)  # a row for x, a row for y
+        self.components = [(share, np.array(mean), np.array(covariance)) for share, mean, covariance in components]
         self.forms = []
-        for share, x, y, xx, xy, yy in components:
+        for share, (x, y), ((xx, xy), (_, yy)) in self.components:
             det = xx * yy - xy * xy
-            self.forms.append((share / (2 * math.pi * math.sqrt(det)), x, y, -0.5 * yy / det, xy / det, -0.5 * xx / det))
+            self.forms.append((share / (2 * math.pi * math.sqrt(det)), complex(x, y), -0.5 * yy / det, xy / det, -0.5 * xx / det))
         source = random.Random(1)
         self.residuals = [self.draw(source) for _ in range(48)]
 
     def draw(self, source):
-        share, x, y, xx, xy, yy = source.choices(self.components, [component[0] for component in self.components])[0]
-        first, second = source.gauss(0, 1), source.gauss(0, 1)
-        sx = math.sqrt(xx)
-        return x + sx * first, y + xy / sx * first + math.sqrt(yy - xy * xy / xx) * second
+        _, mean, covariance = source.choices(self.components, [component[0] for component in self.components])[0]
+        return complex(*(mean + np.linalg.cholesky(covariance) @ (source.gauss(0, 1), source.gauss(0, 1))))
 
     def mean(self, features):
-        return tuple(sum(w * f for w, f in zip(row, features)) for row in self.weights)
+        return complex(*(self.weights @ features))
 
-    def log(self, x, y):
-        """Of a residual."""
+    def log(self, residual):
         total = 0.0
-        for scale, mx, my, xx, xy, yy in self.forms:
-            u, v = x - mx, y - my
+        for scale, mean, xx, xy, yy in self.forms:
+            u, v = (residual - mean).real, (residual - mean).imag
             total += scale * math.exp(xx * u * u + xy * u * v + yy * v * v)
         return math.log(max(total, 1e-30))
 
 
 def fitted(features, targets):
     """The density of the targets given the features, by least squares and expectation maximisation."""
-    features, targets = np.array(features), np.array(targets)
-    ridge = 1e-3 * np.eye(features.shape[1])
-    weights = np.linalg.solve(features.T @ features + ridge, features.T @ targets).T
+    features = np.array(features)
+    targets = np.column_stack([np.real(targets), np.imag(targets)])
+    weights = np.linalg.solve(features.T @ features + 1e-3 * np.eye(features.shape[1]), features.T @ targets).T
     residuals = targets - features @ weights.T
     spread = np.cov(residuals.T) + SMOOTHING_M2 * np.eye(2)
     parts = [(1 / COMPONENTS, np.zeros(2), spread * factor) for factor in (0.05, 0.5, 3.0)]
@@ -85,35 +87,33 @@ def fitted(features, targets):
             mean = own @ residuals / total
             cov = (own[:, None] * (residuals - mean)).T @ (residuals - mean) / total + SMOOTHING_M2 * np.eye(2)
             parts.append((total / len(residuals), mean, cov))
-    kept = 1 - STRAY[0]
-    components = [(kept * share, *mean, cov[0, 0], cov[0, 1], cov[1, 1]) for share, mean, cov in parts]
-    return Density(weights.tolist(), [tuple(map(float, c)) for c in components] + [(STRAY[0], 0.0, 0.0, STRAY[1], 0.0, STRAY[1])])
+    return Density(weights, [((1 - STRAY[0]) * share, mean, cov) for share, mean, cov in parts] + [(STRAY[0], np.zeros(2), STRAY[1] * np.eye(2))])
 
 
+@dataclass
 class View:
     """The nearest cones ahead of the car, in its frame; `radius_m`: they are all cones up to there."""
 
-    def __init__(self, places, radius_m, false_density):
-        self.places, self.radius_m, self.false_density = places, radius_m, false_density
+    places: dict
+    radius_m: float
+    false_density: float
 
-    def contains(self, x, y):
-        return x >= 0.0 and x * x + y * y <= self.radius_m**2
-
-    def margin(self, x, y):
-        return min(x, self.radius_m - math.hypot(x, y))
+    def contains(self, place):
+        return place.real >= 0.0 and abs(place) <= self.radius_m
 
 
 def direction(a, b):
-    length = math.hypot(b[0] - a[0], b[1] - a[1]) or 1e-9
-    return (b[0] - a[0]) / length, (b[1] - a[1]) / length, length
+    return (b - a) / (abs(b - a) or 1e-9)
+
+
+def cross(a, b):
+    return (a.conjugate() * b).imag
 
 
 def points_of(chain, places):
-    """The last three points of a boundary; points behind the car stand for cones that are not there."""
+    """The last three places of a boundary; places behind the car stand for cones that are not there."""
     known = [places[cone] for cone in chain[-3:]]
-    while len(known) < 3:
-        known.insert(0, (known[0][0] - VIRTUAL_M, known[0][1]))
-    return known
+    return [known[0] - VIRTUAL_M * missing for missing in range(3 - len(known), 0, -1)] + known
 
 
 def side_to_grow(lane, ended, places):
@@ -123,9 +123,8 @@ def side_to_grow(lane, ended, places):
     if ended[0] or ended[1]:
         return None if all(ended) else int(ended[0])
     left, right = points_of(lane[0], places), points_of(lane[1], places)
-    ux, uy, _ = direction(left[1], left[2])
-    vx, vy, _ = direction(right[1], right[2])
-    return 0 if (left[2][0] - right[2][0]) * (ux + vx) + (left[2][1] - right[2][1]) * (uy + vy) <= 0.0 else 1
+    ahead = direction(left[1], left[2]) + direction(right[1], right[2])
+    return 0 if ((left[2] - right[2]) * ahead.conjugate()).real <= 0.0 else 1
 
 
 class Context:
@@ -133,46 +132,41 @@ class Context:
     along the last edge and the other boundary is at positive y."""
 
     def __init__(self, lane, side, ended, places):
-        self.sign = -1.0 if side == 0 else 1.0
-        other = lane[1 - side]
+        self.is_left, other = side == 0, lane[1 - side]
         if not lane[side]:
-            self.origin, self.ahead = (0.0, 0.0), (1.0, 0.0)
-            self.kind = "facing" if other else "first"
-            self.features = (1.0, *self.local(places[other[0]])) if other else (1.0,)
+            self.origin, self.ahead = 0j, 1 + 0j
+            self.kind, self.features = "first", (1.0,)
+            if other:
+                facing = self.local(places[other[0]])
+                self.kind, self.features = "facing", (1.0, facing.real, facing.imag)
             return
-        before, last_but_one, last = points_of(lane[side], places)
-        ux, uy, length = direction(last_but_one, last)
-        self.origin, self.ahead = last, (ux, uy)
-        bx, by, _ = direction(before, last_but_one)
-        turn = self.sign * (bx * uy - by * ux)
+        before, last_but_one, self.origin = points_of(lane[side], places)
+        self.ahead, length = direction(last_but_one, self.origin), abs(self.origin - last_but_one)
         _, facing_before, facing = points_of(other, places)
-        qx, qy = self.local(facing)
-        ox, oy, _ = direction(facing_before, facing)
-        slant = self.sign * (ux * oy - uy * ox)
-        if ended[1 - side] or abs(qx) > 8.0 or not 0.0 < qy < 9.0:
+        sign, place = -1.0 if self.is_left else 1.0, self.local(facing)
+        turn, slant = sign * cross(direction(before, last_but_one), self.ahead), sign * cross(self.ahead, direction(facing_before, facing))
+        if ended[1 - side] or abs(place.real) > 8.0 or not 0.0 < place.imag < 9.0:
             self.kind, self.features = "alone", (1.0, length, turn)
         elif len(lane[side]) == 1:
-            self.kind, self.features = "second", (1.0, qx, qy, slant)
+            self.kind, self.features = "second", (1.0, place.real, place.imag, slant)
         else:
-            self.kind, self.features = "next", (1.0, length, turn, qx, qy, slant, length * turn, length * slant)
+            self.kind, self.features = "next", (1.0, length, turn, place.real, place.imag, slant, length * turn, length * slant)
 
-    def local(self, point):
-        x, y = point[0] - self.origin[0], point[1] - self.origin[1]
-        ux, uy = self.ahead
-        return ux * x + uy * y, self.sign * (ux * y - uy * x)
+    def mirrored(self, place):
+        return place.conjugate() if self.is_left else place
 
-    def place(self, x, y):
-        ux, uy = self.ahead
-        y *= self.sign
-        return self.origin[0] + ux * x - uy * y, self.origin[1] + uy * x + ux * y
+    def local(self, place):
+        return self.mirrored((place - self.origin) * self.ahead.conjugate())
+
+    def place(self, local):
+        return self.origin + self.ahead * self.mirrored(local)
 
 
 def decisions(lane, places):
     """What the growth of a lane decides: (context, cone or None for an end)."""
     grown, ended = ([], []), [False, False]
     while (side := side_to_grow(grown, ended, places)) is not None:
-        context = Context(grown, side, ended, places)
-        index = len(grown[side])
+        context, index = Context(grown, side, ended, places), len(grown[side])
         cone = lane[side][index] if index < len(lane[side]) else None
         yield context, cone
         if cone is None:
@@ -181,17 +175,19 @@ def decisions(lane, places):
             grown[side].append(cone)
 
 
+@dataclass
 class Model:
-    def __init__(self, densities, early_end, beside=0.0, far=0.0):
-        self.densities = densities
-        self.early_end = early_end  # probability that a boundary ends although its next cone would be in view
-        self.beside, self.far = beside, far  # true cones of no boundary of the lane, for each m²
+    densities: dict
+    early_end: float  # probability that a boundary ends although its next cone would be in view
+    beside: float = 0.0  # true cones of no boundary of the lane, for each m², beside the lane and far from it
+    far: float = 0.0
 
     def out_of_view(self, context, mean, view):
-        if view.margin(*context.place(*mean)) > 8.0:
+        place = context.place(mean)
+        if min(place.real, view.radius_m - abs(place)) > 8.0:
             return 0.0
         residuals = self.densities[context.kind].residuals
-        return sum(not view.contains(*context.place(mean[0] + x, mean[1] + y)) for x, y in residuals) / len(residuals)
+        return sum(not view.contains(context.place(mean + residual)) for residual in residuals) / len(residuals)
 
     def options(self, context, view):
         """Log weight of each next cone and, under None, of the end; a cone counts against a uniform one."""
@@ -199,11 +195,8 @@ class Model:
         mean = density.mean(context.features)
         can_end = context.kind not in ("first", "facing")
         stay = math.log(1.0 - self.early_end) if can_end else 0.0
-        found = {}
-        for cone, place in view.places.items():
-            x, y = context.local(place)
-            if x * x + y * y <= REACH_M**2:
-                found[cone] = stay + density.log(x - mean[0], y - mean[1]) - math.log(self.far + view.false_density)
+        found = {cone: stay + density.log(local - mean) - math.log(self.far + view.false_density) for cone, place in view.places.items()
+                 if abs(local := context.local(place)) <= REACH_M}
         if can_end:
             found[None] = math.log(self.early_end + (1.0 - self.early_end) * self.out_of_view(context, mean, view))
         return found
@@ -221,32 +214,29 @@ def beside(lane, view):
     lines = [[view.places[cone] for cone in chain] for chain in lane]
     number = sum(min(distance_m(place, line) for line in lines) < BESIDE_M
                  for cone, place in view.places.items() if cone not in lane[0] and cone not in lane[1])
-    return number, 2 * BESIDE_M * sum(math.dist(a, b) for line in lines for a, b in zip(line, line[1:]))
+    return number, 2 * BESIDE_M * sum(abs(b - a) for line in lines for a, b in zip(line, line[1:]))
 
 
 def learn(examples):
     """The model of views without false cones, with their lanes."""
-    features, targets = defaultdict(list), defaultdict(list)
-    ends, steps = 1.0, 50.0
+    features, targets, ending = defaultdict(list), defaultdict(list), []
     near, far, near_m2, far_m2 = 1.0, 1.0, 1e3, 1e3  # as if one cone had been seen
     for view, lane in examples:
         for context, cone in decisions(lane, view.places):
-            if cone is not None:
+            if cone is None:
+                ending.append((context, view))
+            else:
                 features[context.kind].append(context.features)
                 targets[context.kind].append(context.local(view.places[cone]))
-                steps += 1
         number, area_m2 = beside(lane, view)
         near += number
         near_m2 += area_m2
         far += len(view.places) - len(lane[0]) - len(lane[1]) - number
         far_m2 += max(0.0, 0.5 * math.pi * view.radius_m**2 - area_m2)
-    densities = {kind: fitted(features[kind], targets[kind]) for kind in features}
-    model = Model(densities, 0.5, near / near_m2, far / far_m2)
-    for view, lane in examples:
-        for context, cone in decisions(lane, view.places):
-            if cone is None:  # the share of the ends that the view does not explain
-                ends += 1.0 - model.out_of_view(context, densities[context.kind].mean(context.features), view)
-    model.early_end = ends / (ends + steps)
+    model = Model({kind: fitted(features[kind], targets[kind]) for kind in features}, 0.5, near / near_m2, far / far_m2)
+    # The share of the ends that the view does not explain.
+    ends = 1.0 + sum(1.0 - model.out_of_view(context, model.densities[context.kind].mean(context.features), view) for context, view in ending)
+    model.early_end = ends / (ends + 50.0 + sum(map(len, targets.values())))
     return model
 
 
@@ -262,6 +252,9 @@ def posterior(model, view, also=None):
             memo[key] = [(cone, weight) for cone, weight in found.items() if weight > best - 12.0]
         return memo[key]
 
+    def replaced(pair, side, value):
+        return (value, pair[1]) if side == 0 else (pair[0], value)
+
     complete, beam = {}, [(0.0, ((), ()), (False, False))]
     while beam:
         grown = []
@@ -272,41 +265,31 @@ def posterior(model, view, also=None):
                 continue
             for cone, weight in options(lane, side, ended):
                 if cone is None:
-                    grown.append((score + weight, lane, (True, ended[1]) if side == 0 else (ended[0], True)))
+                    grown.append((score + weight, lane, replaced(ended, side, True)))
                 elif cone not in lane[0] and cone not in lane[1]:
-                    longer = lane[side] + (cone,)
-                    grown.append((score + weight, (longer, lane[1]) if side == 0 else (lane[0], longer), ended))
-        grown.sort(key=lambda state: -state[0])
-        beam = grown[:BEAM]
+                    grown.append((score + weight, replaced(lane, side, lane[side] + (cone,)), ended))
+        beam = sorted(grown, key=lambda state: -state[0])[:BEAM]
     if also is not None and also not in complete:
         complete[also] = model.log_of_others(also, view) + sum(model.options(context, view).get(cone, -60.0)
                                                                for context, cone in decisions(also, view.places))
+    kept = dict(sorted(complete.items(), key=lambda item: -item[1])[:KEPT])
+    if also is not None:
+        kept.setdefault(also, complete[also])
     best = max(complete.values())
-    kept = sorted(complete.items(), key=lambda item: -item[1])[:KEPT]
-    if also is not None and also not in dict(kept):
-        kept.append((also, complete[also]))
-    total = sum(math.exp(score - best) for _, score in kept)
-    return [(lane, math.exp(score - best) / total) for lane, score in kept]
+    total = sum(math.exp(score - best) for score in kept.values())
+    return [(lane, math.exp(score - best) / total) for lane, score in kept.items()]
 
 
-def distance_m(point, line):
-    if len(line) == 1:
-        return math.dist(point, line[0])
-    shortest = math.inf
-    for (ax, ay), (bx, by) in zip(line, line[1:]):
-        x, y = bx - ax, by - ay
-        along = ((point[0] - ax) * x + (point[1] - ay) * y) / ((x * x + y * y) or 1e-12)
-        along = min(1.0, max(0.0, along))
-        shortest = min(shortest, math.hypot(point[0] - ax - along * x, point[1] - ay - along * y))
-    return shortest
+def distance_m(place, line):
+    def to_edge(a, b):
+        along = ((place - a) * (b - a).conjugate()).real / (abs(b - a)**2 or 1e-12)
+        return abs(place - a - min(1.0, max(0.0, along)) * (b - a))
+    return min((to_edge(a, b) for a, b in zip(line, line[1:])), default=abs(place - line[0]))
 
 
 def cut(lane, inside, places):
     """The lane up to the first cone that is not inside, with even far ends; as model/lane.cpp."""
-    sides = []
-    for chain in lane:
-        first_outside = next((i for i, cone in enumerate(chain) if cone not in inside), len(chain))
-        sides.append(list(chain[:first_outside]))
+    sides = [list(chain[:next((i for i, cone in enumerate(chain) if cone not in inside), len(chain))]) for chain in lane]
     while sides[0] and sides[1]:
         lines = [[places[cone] for cone in side] for side in sides]
         far = [distance_m(lines[i][-1], lines[1 - i]) > WIDEST_M for i in (0, 1)]
@@ -316,10 +299,14 @@ def cut(lane, inside, places):
     return tuple(sides[0]), tuple(sides[1])
 
 
+def counts(lane):
+    """Only lanes with two cones a side count."""
+    return len(lane[0]) >= 2 and len(lane[1]) >= 2
+
+
 def shortened(lanes, inside, places):
-    """The lanes of the cones inside. Only lanes with two cones a side count."""
-    short = [(cut(lane, inside, places), probability) for lane, probability in lanes]
-    return [(lane, probability) for lane, probability in short if len(lane[0]) >= 2 and len(lane[1]) >= 2]
+    """The lanes of the cones inside."""
+    return [(short, probability) for lane, probability in lanes if counts(short := cut(lane, inside, places))]
 
 
 def judged(lanes, power=1.0):
@@ -329,11 +316,9 @@ def judged(lanes, power=1.0):
         mass[lane] += probability**power
     if not mass:
         return ((), ()), 0.0
-    total = sum(mass.values())
-    sets = {lane: frozenset(lane[0] + lane[1]) for lane in mass}
 
     def value(answer):
-        return sum(p for lane, p in mass.items() if len(sets[lane] ^ sets[answer]) <= 1) / total
+        return sum(p for lane, p in mass.items() if is_right(answer, lane)) / sum(mass.values())
     best = max(sorted(mass, key=lambda lane: -mass[lane])[:30], key=value)
     return best, value(best)
 
@@ -344,12 +329,10 @@ def is_right(answer, truth):
 
 def log_likelihoods(outcomes):
     """How likely it is, with each of the powers, that the answers are right and wrong where they are. `outcomes`: (lanes, truth) each."""
-    totals = [0.0] * len(POWERS)
-    for lanes, truth in outcomes:
-        for i, power in enumerate(POWERS):
-            answer, expected = judged(lanes, power)
-            totals[i] += math.log(max(expected if is_right(answer, truth) else 1.0 - expected, 1e-3))
-    return totals
+    def log(lanes, truth, power):
+        answer, expected = judged(lanes, power)
+        return math.log(max(expected if is_right(answer, truth) else 1.0 - expected, 1e-3))
+    return [sum(log(*outcome, power) for outcome in outcomes) for power in POWERS]
 
 
 def power_of(likelihoods):
@@ -362,8 +345,7 @@ def loss(answer, truth):
     if any(ours[:1] != theirs[:1] for ours, theirs in zip(answer, truth)):
         return "start"
     for ours, theirs in zip(answer, truth):
-        common = min(len(ours), len(theirs))
-        tail = common - 1  # the last cone that both have may be swapped
+        tail = min(len(ours), len(theirs)) - 1  # the last cone that both have may be swapped
         if ours[:tail] != theirs[:tail]:
             return "inside"
     return "ends"
@@ -373,93 +355,81 @@ class Scene:
     """A scene with a truth, in the car's frame."""
 
     def __init__(self, record, boundaries):
-        self.id, self.track, self.rate = record["id"], record["track"], record.get("false_positive_rate", 0.0)
-        pose = record["pose"]
-        cos, sin = math.cos(pose["yaw"]), math.sin(pose["yaw"])
-        moved = {cone["id"]: (cone["x"] - pose["x"], cone["y"] - pose["y"]) for cone in record["cones"]}
-        self.all = {cone: (cos * x + sin * y, cos * y - sin * x) for cone, (x, y) in moved.items()}
-        order = sorted(self.all, key=lambda cone: math.hypot(*self.all[cone]))
+        self.id, self.rate = record["id"], record.get("false_positive_rate", 0.0)
+        pose, range_m = record["pose"], record["range"]
+        self.all = {cone["id"]: (complex(cone["x"], cone["y"]) - complex(pose["x"], pose["y"])) * cmath.exp(-1j * pose["yaw"])
+                    for cone in record["cones"]}
+        order = sorted(self.all, key=lambda cone: abs(self.all[cone]))
         places = {cone: self.all[cone] for cone in order[:CONTEXT]}
-        radius_m = math.hypot(*self.all[order[CONTEXT - 1]]) if len(order) >= CONTEXT else record["range"]
         self.inside = set(order[:NEAREST])
-        chains = tuple(tuple(record["ground_truth"][side]) for side in ("left", "right"))
+        chains = [record["ground_truth"][side] for side in ("left", "right")]
         self.truth = cut(chains, self.inside, self.all)
+        self.counts = counts(self.truth)
         by_place = {(round(cone["x"], 2), round(cone["y"], 2)): cone["id"] for cone in record["cones"]}
         full = []
-        for chain, side in zip(chains, ("left", "right")):  # without the evening of the far ends, where the boundary goes on
-            ids = [by_place.get((round(x, 2), round(y, 2))) for x, y in boundaries[side]]
-            chain = list(chain)
-            for step in (1, -1):
-                at = [i for i in range(len(ids)) if ids[i] == chain[-1] and ids[(i - step) % len(ids)] == chain[-2]]
-                following = at[0] + step if at else None
-                while following is not None and (boundaries["closed"] or 0 <= following < len(ids)):
-                    cone = ids[following % len(ids)]
-                    if cone is None or cone in chain:
-                        break
-                    chain.append(cone)
-                    following += step
-            end = next((i for i, cone in enumerate(chain) if cone not in places), len(chain))
-            full.append(tuple(chain[:end]))
+        for chain, side in zip(chains, ("left", "right")):
+            whole = onward(chain, [by_place.get((round(x, 2), round(y, 2))) for x, y in boundaries[side]], boundaries["closed"])
+            full.append(tuple(whole[:next((i for i, cone in enumerate(whole) if cone not in places), len(whole))]))
         self.lane = tuple(full)
-        self.view = View(places, radius_m, self.rate * len(self.all) / (0.5 * math.pi * record["range"]**2))
+        self.view = View(places, abs(self.all[order[CONTEXT - 1]]) if len(order) >= CONTEXT else range_m,
+                         self.rate * len(self.all) / (0.5 * math.pi * range_m**2))
 
-    def counts(self):
-        return len(self.truth[0]) >= 2 and len(self.truth[1]) >= 2
+
+def onward(chain, boundary, is_closed):
+    """The chain without the evening of its far end, where the boundary of the course goes on."""
+    chain, size = list(chain), len(boundary)
+    for step in (1, -1):
+        at = [i for i in range(size) if boundary[i] == chain[-1] and boundary[(i - step) % size] == chain[-2]]
+        following = at[0] + step if at else None
+        while following is not None and (is_closed or 0 <= following < size):
+            cone = boundary[following % size]
+            if cone is None or cone in chain:
+                break
+            chain.append(cone)
+            following += step
+    return chain
 
 
 def read_scenes(path):
-    with open(path.replace(".scenes.jsonl", ".tracks.json"), encoding="utf-8") as stream:
-        tracks = json.load(stream)
-    with open(path, encoding="utf-8") as stream:
-        records = [json.loads(line) for line in stream]
-    return records, {record["id"]: Scene(record, tracks[record["track"]]) for record in records if record.get("ground_truth")}
+    """The ids of all scenes, and those with a truth by their id."""
+    tracks, records = read_json(path.replace(".scenes.jsonl", ".tracks.json")), lines_of(path)
+    return [record["id"] for record in records], {record["id"]: Scene(record, tracks[record["track"]]) for record in records if record.get("ground_truth")}
 
 
 def answer_line(scene, method, lane):
     found = bool(lane[0] and lane[1])
-    return json.dumps({"scene": scene, "method": method, "status": "found" if found else "none", "left": list(lane[0]) if found else [],
-                       "right": list(lane[1]) if found else [], "closed": False, "latency_ms": 0.0, "nearest": NEAREST})
+    left, right = lane if found else ((), ())
+    return json.dumps({"scene": scene, "method": method, "status": "found" if found else "none", "left": left, "right": right, "closed": False,
+                       "latency_ms": 0.0, "nearest": NEAREST}) + "\n"
 
 
 def main(folder):
-    suffix = ".scenes.jsonl"
-    names = sorted(name.removesuffix(suffix) for name in os.listdir(folder) if name.endswith(suffix))
-    families = {name: read_scenes(os.path.join(folder, name + suffix)) for name in names}
-    lanes = {}
-    for name, (_, scenes) in families.items():
-        model = learn([(scene.view, scene.lane) for other, (_, known) in families.items() if other != name
-                       for scene in known.values() if scene.rate == 0.0 and scene.counts()])
-        lanes[name] = {scene.id: shortened(posterior(model, scene.view, scene.lane), scene.inside, scene.all)
-                       for scene in scenes.values() if scene.counts()}
-    likelihoods = {name: log_likelihoods([(found, scenes[scene].truth) for scene, found in lanes[name].items()])
-                   for name, (_, scenes) in families.items()}
-    rows = []
-    for name, (records, scenes) in families.items():
+    def place(name, suffix):
+        return os.path.join(folder, f"{name}.{suffix}")
+
+    names = sorted(name.removesuffix(".scenes.jsonl") for name in os.listdir(folder) if name.endswith(".scenes.jsonl"))
+    ids, scenes = {}, {}
+    for name in names:
+        ids[name], known = read_scenes(place(name, "scenes.jsonl"))
+        scenes[name] = {scene: one for scene, one in known.items() if one.counts}
+    lanes, likelihoods, rows = {}, {}, []
+    for name in names:
+        model = learn([(scene.view, scene.lane) for other in names if other != name for scene in scenes[other].values() if scene.rate == 0.0])
+        lanes[name] = {scene.id: shortened(posterior(model, scene.view, scene.lane), scene.inside, scene.all) for scene in scenes[name].values()}
+        likelihoods[name] = log_likelihoods([(found, scenes[name][scene].truth) for scene, found in lanes[name].items()])
+    for name in names:
         power = power_of([likelihoods[other] for other in names if other != name])
-        cells = defaultdict(lambda: defaultdict(float))
-        lines = {"judge": [], "truth": []}
-        for record in records:
-            scene = scenes.get(record["id"])
-            answer, truth = ((), ()), ((), ())
-            if scene and scene.counts():
-                answer, expected = judged(lanes[name][scene.id], power)
-                truth = scene.truth
-                cell = cells[scene.rate]
-                cell["scenes"] += 1
-                cell["expected"] += expected
-                if is_right(answer, truth):
-                    cell["attained"] += 1
-                else:
-                    cell[loss(answer, truth)] += 1
-            lines["judge"].append(answer_line(record["id"], "judge", answer))
-            lines["truth"].append(answer_line(record["id"], "truth", truth))
-        for kind, answers in lines.items():
-            with open(os.path.join(folder, f"{name}.{kind}.lanes.jsonl"), "w", encoding="utf-8") as stream:
-                stream.write("\n".join(answers) + "\n")
-        for rate, cell in sorted(cells.items()):
-            rows.append({"family": name, "rate": rate, "scenes": int(cell["scenes"]), "power": power,
-                         "expected": round(cell["expected"] / cell["scenes"], 6), "attained": round(cell["attained"] / cell["scenes"], 6)} |
-                        {where: int(cell[where]) for where in ("start", "inside", "ends")})
+        answers = {scene: judged(found, power) for scene, found in lanes[name].items()}
+        truths = {scene: (one.truth, 1.0) for scene, one in scenes[name].items()}
+        for method, given in (("judge", answers), ("truth", truths)):
+            with open(place(name, f"{method}.lanes.jsonl"), "w", encoding="utf-8") as stream:
+                stream.writelines(answer_line(scene, method, given.get(scene, (((), ()), 0.0))[0]) for scene in ids[name])
+        for rate in sorted({scene.rate for scene in scenes[name].values()}):
+            of_rate = [scene for scene in scenes[name].values() if scene.rate == rate]
+            where = Counter("attained" if is_right(answers[scene.id][0], scene.truth) else loss(answers[scene.id][0], scene.truth) for scene in of_rate)
+            rows.append({"family": name, "rate": rate, "scenes": len(of_rate), "power": power,
+                         "expected": rounded(sum(answers[scene.id][1] for scene in of_rate) / len(of_rate)),
+                         "attained": rounded(where["attained"] / len(of_rate))} | {key: where[key] for key in ("start", "inside", "ends")})
             print(json.dumps(rows[-1]), flush=True)
     with open(os.path.join(folder, "course_judge.json"), "w", encoding="utf-8") as stream:
         json.dump(rows, stream, indent=1)

@@ -1,11 +1,10 @@
 """Courses that no method has learned from: the figures of the runs of experiments/tables/held_out, and their tables."""
 
-import json
 import os
 from collections import defaultdict
 
-from cells import both, lines_of, percent, provenance, rounded, table, version_of
-from races import MEASURES, mean, measure_cells, race_rows
+from cells import UNKNOWN, both, fixed, grouped, lines_of, mean, over, percent, provenance, read_json, rounded, table, version_of
+from races import MEASURES, measure_cells, race_rows
 
 COMPARISONS = ["front", "front_no_persist", "front_lap", "front_colors", "clc", "others", "others_colors", "peers", "peers_colors"]
 OPTIONAL = {"peers", "peers_colors"}  # of answers that DATA may have
@@ -58,24 +57,19 @@ def row_of(line):
 
 def part_of(scores, family_of, name, selected):
     """Usable and IoU over the selected courses, by method, condition, rate and range."""
-    cells = defaultdict(list)
-    for score in scores:
-        if selected(family_of[score["track"]], score["track"]):
-            cells[score["method"], score["condition"], score["false_positive_rate"], score["range"]].append(score)
-    return [{"part": name, "method": method, "condition": condition, "rate": rate, "range": distance, "scenes": len(cell),
-             "usable": mean([float(score["usable"]) for score in cell if "usable" in score]),
-             "judged": sum("usable" in score for score in cell),
-             "iou": mean([score["iou"] for score in cell if "iou" in score]), "measured": sum("iou" in score for score in cell)}
-            for (method, condition, rate, distance), cell in sorted(cells.items())]
+    cells = grouped((score for score in scores if selected(family_of[score["track"]], score["track"])), ("method", "condition", "false_positive_rate", "range"))
+    rows = []
+    for (method, condition, rate, distance), cell in sorted(cells.items()):
+        usable, iou = ([float(score[key]) for score in cell if key in score] for key in ("usable", "iou"))
+        rows.append({"part": name, "method": method, "condition": condition, "rate": rate, "range": distance, "scenes": len(cell),
+                     "usable": mean(usable), "judged": len(usable), "iou": mean(iou), "measured": len(iou)})
+    return rows
 
 
 def families_of(folds, tracks):
     """The family of each track: the fold whose training has not seen it. None for a run without annotated boundaries: nothing learns
     from it."""
-    learned = {}
-    for family in sorted(os.listdir(folds)):
-        with open(os.path.join(folds, family, "front.json"), encoding="utf-8") as stream:
-            learned[family] = set(json.load(stream)["training"]["tracks"])
+    learned = {family: set(read_json(os.path.join(folds, family, "front.json"))["training"]["tracks"]) for family in sorted(os.listdir(folds))}
     family_of = {}
     for track in sorted(tracks):
         unseen = [family for family, seen in learned.items() if track not in seen]
@@ -103,15 +97,10 @@ def twelve_rows(folder, kinds=("default", "shape", "learned")):
 
 def judge_rows(folder):
     """The rows of course_judge.py, each family, and all together."""
-    with open(os.path.join(folder, "course_judge.json"), encoding="utf-8") as stream:
-        rows = json.load(stream)
-    for rate in sorted({row["rate"] for row in rows}):
-        cells = [row for row in rows if row["rate"] == rate and row["family"] != "all"]
-        scenes = sum(row["scenes"] for row in cells)
-        together = {key: rounded(sum(row[key] * row["scenes"] for row in cells) / scenes) for key in ("expected", "attained")}
-        rows.append({"family": "all", "rate": rate, "scenes": scenes} | together |
-                    {key: sum(row[key] for row in cells) for key in ("start", "inside", "ends")})
-    return rows
+    rows = read_json(os.path.join(folder, "course_judge.json"), list)
+    return rows + [{"family": "all", "rate": rate, "scenes": sum(row["scenes"] for row in cells)} |
+                   {key: rounded(over(cells, key)) for key in ("expected", "attained")} |
+                   {key: sum(row[key] for row in cells) for key in ("start", "inside", "ends")} for (rate,), cells in sorted(grouped(rows, ("rate",)).items())]
 
 
 def collect(folder):
@@ -133,8 +122,7 @@ def collect(folder):
                                 for row in part_of(scores, family_of, "ordinary", lambda _, track: track not in PECULIAR)]
     stored["courses"] = family_of
     for name in RACES:
-        with open(os.path.join(folder, name, "race.json"), encoding="utf-8") as stream:
-            record = json.load(stream)
+        record = read_json(os.path.join(folder, name, "race.json"))
         stored["runs"][name] = provenance(record)
         stored["races"] += [{"run": name} | row for row in race_rows(record)]
     stored["twelve"] = twelve_rows(os.path.join(folder, "twelve"))
@@ -144,6 +132,12 @@ def collect(folder):
     return stored
 
 
+def is_of(row, run, method, condition, rate):
+    """Whether a row is of this run; without a run, of one of those on the scenes of the first table."""
+    return ((row["run"] in OWN_SCENES if run is None else row["run"] == run) and row["method"] == method
+            and row["condition"].split("+")[0] == condition and row["rate"] == rate)
+
+
 class Figures:
     """The stored figures; a figure that is not there is a dash."""
 
@@ -151,58 +145,60 @@ class Figures:
         self.stored = stored
 
     def row(self, run, method, condition, rate, distance):
-        found = [row for row in self.stored["rows"]
-                 if (row["run"] in OWN_SCENES if run is None else row["run"] == run) and row["method"] == method
-                 and row["condition"].split("+")[0] == condition and row["rate"] == rate and row["range"] == distance]
-        return found[0] if found else None
+        return next((row for row in self.stored["rows"] if is_of(row, run, method, condition, rate) and row["range"] == distance), None)
 
     def part(self, part, run, method, condition, rate, distances):
         """Mean over the ranges, weighted by scenes."""
         found = [row for row in self.stored["parts"]
-                 if row["part"] == part and (row["run"] in OWN_SCENES if run is None else row["run"] == run) and row["method"] == method
-                 and row["condition"].split("+")[0] == condition and row["rate"] == rate and row["range"] in distances]
-        if not found:
-            return None
-        usable = sum(row["usable"] * row["judged"] for row in found) / sum(row["judged"] for row in found)
-        measured = [row for row in found if row["iou"] is not None]
-        iou = sum(row["iou"] * row["measured"] for row in measured) / sum(row["measured"] for row in measured) if measured else None
-        return {"usable": usable, "iou": iou}
+                 if row["part"] == part and is_of(row, run, method, condition, rate) and row["range"] in distances]
+        return {"usable": over(found, "usable", "judged"), "iou": over(found, "iou", "measured")} if found else None
+
+    def there(self, names):
+        """The methods of the first table that have figures, with their labels."""
+        return [(method, label) for method, label in names.items() if self.row(None, method, "paper", 0.0, 30.0)]
 
 
-def columns(first, conditions=CONDITIONS):
-    return [first] + [f"`{condition}` {100 * rate:.0f} %" if rate == RATES[0] else f"{100 * rate:.0f} %"
-                      for condition in conditions for rate in RATES]
+def at_rates(before="", after=""):
+    """Titles of the columns of the rates."""
+    return [f"{before}{100 * rate:.0f} %{after}" if rate == RATES[0] else f"{100 * rate:.0f} %" for rate in RATES]
 
 
-def methods_there(figures, names):
-    return [(method, label) for method, label in names.items() if figures.row(None, method, "paper", 0.0, 30.0)]
+def lane_table(first, rows):
+    """`rows`: a label and the text of a condition and rate each."""
+    return table([first] + [title for condition in CONDITIONS for title in at_rates(f"`{condition}` ")],
+                 [[label] + [text(condition, rate) for condition in CONDITIONS for rate in RATES] for label, text in rows])
+
+
+def quality_rows(figures, labels, distance):
+    return [(label, lambda condition, rate, method=method: both(figures.row(None, method, condition, rate, distance))) for method, label in labels]
 
 
 def usable_table(figures):
-    return table(columns("usable, %"),
-                 [[label] + [percent(figures.row(None, method, condition, rate, 30.0)["usable"])
-                             for condition in CONDITIONS for rate in RATES]
-                  for method, label in methods_there(figures, README_METHODS)])
+    return lane_table("usable, %", [
+        (label, lambda condition, rate, method=method: percent(figures.row(None, method, condition, rate, 30.0)["usable"]))
+        for method, label in figures.there(README_METHODS)])
 
 
 def quality_table(figures, distance):
-    return table(columns("usable / IoU, %"),
-                 [[label] + [both(figures.row(None, method, condition, rate, distance)) for condition in CONDITIONS for rate in RATES]
-                  for method, label in methods_there(figures, METHODS)])
+    return lane_table("usable / IoU, %", quality_rows(figures, figures.there(METHODS), distance))
 
 
 def designed_table(figures):
-    return table(columns("usable / IoU, %"),
-                 [[label] + [both(figures.part("designed", None, method, condition, rate, {30.0}))
-                             for condition in CONDITIONS for rate in RATES]
-                  for method, label in methods_there(figures, METHODS)])
+    return lane_table("usable / IoU, %", [
+        (label, lambda condition, rate, method=method: both(figures.part("designed", None, method, condition, rate, {30.0})))
+        for method, label in figures.there(METHODS)])
+
+
+def peer_table(figures):
+    return lane_table("usable / IoU, %", quality_rows(figures, figures.there(
+        {"ft-fsd-path-planning": "ft-fsd-path-planning, sorting of cones", "front": "`front`"}), 30.0))
 
 
 def ordinary_table(figures):
     rows = [("`paper`", "front", "paper"), ("`car`", "front", "car"),
             ("`car`, with colours", "front_colors", "car"), ("`car`, false positives drawn at each pose", "front_no_persist", "car"),
             ("`harsh`", "front", "harsh")]
-    return table(["usable / IoU, %"] + [f"{100 * rate:.0f} %" for rate in RATES],
+    return table(["usable / IoU, %"] + at_rates(),
                  [[label] + [both(figures.part("ordinary", run, "front", condition, rate, {30.0, 50.0})) for rate in RATES]
                   for label, run, condition in rows])
 
@@ -210,66 +206,55 @@ def ordinary_table(figures):
 def colour_table(figures):
     """Each method that can use colours, without and with them. A run that is not stored is a row of dashes, so that it is missed."""
     distances = (30.0, 50.0)
-    head = ["`car`, usable / IoU, %"] + [f"{distance:.0f} m, {100 * rate:.0f} %" if rate == RATES[0] else f"{100 * rate:.0f} %"
-                                         for distance in distances for rate in RATES]
+    head = ["`car`, usable / IoU, %"] + [title for distance in distances for title in at_rates(f"{distance:.0f} m, ")]
     return table(head, [[METHODS[method].removesuffix(", without colours") + label] +
                         [both(figures.row(run, method, "car", rate, distance)) for distance in distances for rate in RATES]
                         for method, coloured in COLOURED.items() for label, run in (("", None), (", with colours", coloured))])
 
 
 def conditions_table(figures):
-    rows = [(f"`front` in `harsh`, {distance:.0f} m", "front", "front", "harsh", distance) for distance in (30.0, 50.0)]
-    rows += [(f"`front` in `car`, false positives drawn at each pose, {distance:.0f} m", "front_no_persist", "front", "car", distance)
-             for distance in (30.0, 50.0)]
+    rows = [(f"`front` in {label}, {distance:.0f} m", run, "front", condition, distance)
+            for label, run, condition in (("`harsh`", "front", "harsh"), ("`car`, false positives drawn at each pose", "front_no_persist", "car"))
+            for distance in (30.0, 50.0)]
     rows += [(f"`{method}` along a lap", "front_lap", method, "car", 30.0) for method in ("front", "front-warm")]
     lines = []
     for label, run, method, condition, distance in rows:
         cells = [figures.row(run, method, condition, rate, distance) for rate in RATES]
-        steady = f"{percent(cells[0]['unsteady'], 0)} / {percent(cells[-1]['unsteady'], 0)}" if run == "front_lap" else "–"
+        steady = f"{percent(cells[0]['unsteady'], 0)} / {percent(cells[-1]['unsteady'], 0)}" if run == "front_lap" else UNKNOWN
         lines.append([label] + [both(cell) for cell in cells] + [steady])
-    return table(["usable / IoU, %"] + [f"{100 * rate:.0f} %" for rate in RATES] + ["unsteady at 0 / 50 %"], lines)
+    return table(["usable / IoU, %"] + at_rates() + ["unsteady at 0 / 50 %"], lines)
+
+
+def ends(figures, method, condition, distance, *keys):
+    """Texts of figures without and with the most false positives; `keys`: (show, key, digits), of rows or their certainty."""
+    cells = [figures.row(None, method, condition, rate, distance) for rate in (0.0, 0.5)]
+    cells = [cell | cell.get("certainty", {}) for cell in cells]
+    return [" / ".join(show(cell[key], digits) for cell in cells) for show, key, digits in keys]
 
 
 def error_table(figures):
-    def pair(cells, key, digits, scale=1.0):
-        return " / ".join("–" if cell[key] is None else f"{scale * cell[key]:.{digits}f}" for cell in cells)
-    lines = []
-    for method, _ in methods_there(figures, METHODS):
-        if method in ("rld-cbc", "ft-fsd-path-planning"):
-            continue
-        for condition in CONDITIONS:
-            cells = [figures.row(None, method, condition, rate, 30.0) for rate in (0.0, 0.5)]
-            lines.append([f"`{method}` in `{condition}`", pair(cells, "centre_p95_m", 2), pair(cells, "heading_p95_rad", 3),
-                          pair(cells, "unsteady", 0, 100.0), pair(cells, "exact", 0, 100.0)])
-    return table(["", "centre p95, m", "heading p95, rad", "unsteady, %", "exact, %"], lines)
+    return table(["", "centre p95, m", "heading p95, rad", "unsteady, %", "exact, %"], [
+        [f"`{method}` in `{condition}`", *ends(figures, method, condition, 30.0, (fixed, "centre_p95_m", 2), (fixed, "heading_p95_rad", 3),
+                                               (percent, "unsteady", 0), (percent, "exact", 0))]
+        for method, _ in figures.there(METHODS) if method not in ("rld-cbc", "ft-fsd-path-planning") for condition in CONDITIONS])
 
 
 def certainty_table(figures):
-    lines = []
-    for condition in CONDITIONS:
-        for distance in (30.0, 50.0):
-            cells = [figures.row(None, "front", condition, rate, distance)["certainty"] for rate in (0.0, 0.5)]
-            def pair(key, digits):
-                return " / ".join(percent(cell[key], digits) for cell in cells)
-            lines.append([f"`{condition}`, {distance:.0f} m", pair("off", 1), pair("sure", 0), pair("usable_if_sure", 1),
-                          pair("trusted", 0), pair("right_if_trusted", 1)])
-    return table(["at 0 % / 50 % false positives", "off", "sure", "usable if sure", "trusted", "right if trusted"], lines)
+    keys = [(percent, key, digits) for key, digits in (("off", 1), ("sure", 0), ("usable_if_sure", 1), ("trusted", 0), ("right_if_trusted", 1))]
+    return table(["at 0 % / 50 % false positives", "off", "sure", "usable if sure", "trusted", "right if trusted"], [
+        [f"`{condition}`, {distance:.0f} m", *ends(figures, "front", condition, distance, *keys)] for condition in CONDITIONS for distance in (30.0, 50.0)])
 
 
 def certainty_in_words(figures):
     """Over all rates and both ranges, weighted by scenes, what is said of sure lanes by their number."""
-    def over(condition, key, weight=None):
-        cells = [(row["certainty"], row["scenes"]) for row in figures.stored["rows"]
-                 if row["run"] == "front" and row["method"] == "front" and row["condition"] == condition]
-        cells = [(certainty, scenes) for certainty, scenes in cells if certainty[key] is not None]  # None: no lane was sure
-        if not cells:
-            return percent(None)
-        weights = [scenes * (1.0 if weight is None else certainty[weight]) for certainty, scenes in cells]
-        return percent(sum(certainty[key] * share for (certainty, _), share in zip(cells, weights)) / sum(weights))
-    def each(key, weight=None):
-        return [over(condition, key, weight) for condition in CONDITIONS]
-    off, sure, right = each("off"), each("usable_if_sure", "sure"), each("right_if_trusted")
-    trusted = each("trusted")
+    def each(key, of=None):
+        texts = []
+        for condition in CONDITIONS:
+            cells = [row["certainty"] | {"weight": row["scenes"] * (1.0 if of is None else row["certainty"][of] or 0.0)} for row in figures.stored["rows"]
+                     if (row["run"], row["method"], row["condition"]) == ("front", "front", condition)]
+            texts.append(percent(over(cells, key, "weight")))
+        return texts
+    off, sure, right, trusted = each("off"), each("usable_if_sure", "sure"), each("right_if_trusted"), each("trusted")
     return table(["number", "meaning", "held out, 30 and 50 m, 0 to 50 % false cones"], [
         ["`confidence`", "probability that the lane is usable: right for 20 m and long enough",
          f"off by {off[0]} % (`paper`) and {off[1]} % (`car`) on average; of the lanes with 99 % and more, {sure[0]} and {sure[1]} % are usable"],
@@ -278,14 +263,12 @@ def certainty_in_words(figures):
 
 
 def latency_table(figures):
-    lines = []
-    for method in ("front", "clc"):
-        for condition in CONDITIONS:
-            cells = [figures.row(None, method, condition, rate, distance)["latency_ms"]
-                     for rate in (0.0, 0.3, 0.5) for distance in (30.0, 50.0)]
-            lines.append([f"`{method}` in `{condition}`"] +
-                         [f"{cell['median']:.2f} / {cell['p95']:.1f} / {cell['max']:.0f}" for cell in cells])
-    return table(["median / p95 / longest, ms", "0 %, 30 m", "50 m", "30 %, 30 m", "50 m", "50 %, 30 m", "50 m"], lines)
+    def text(latency):
+        return f"{latency['median']:.2f} / {latency['p95']:.1f} / {latency['max']:.0f}"
+    return table(["median / p95 / longest, ms", "0 %, 30 m", "50 m", "30 %, 30 m", "50 m", "50 %, 30 m", "50 m"], [
+        [f"`{method}` in `{condition}`"] + [text(figures.row(None, method, condition, rate, distance)["latency_ms"])
+                                            for rate in (0.0, 0.3, 0.5) for distance in (30.0, 50.0)]
+        for method in ("front", "clc") for condition in CONDITIONS])
 
 
 DRIVERS = [("`front-warm`, frame by frame", "`car`", "race", "front-warm"), ("through a planner", "`car`", "race", "front-warm+planner"),

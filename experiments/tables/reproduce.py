@@ -1,10 +1,9 @@
 """The whole run of experiments/reproduce: commit, machine, dates, and how long each part took."""
 
-import json
 import os
 from datetime import datetime
 
-from cells import lines_of, table
+from cells import UNKNOWN, columns_table, fixed, lines_of, read_json, table
 
 WHAT = {"held_out": "lanes and races of weights that have not learned from the course", "shipped": "colours, uncertain positions, acceleration and skidpad",
         "solvers": "solvers, exactness, the beam of `front`, the report", "pictures": "pictures of single scenes"}
@@ -28,24 +27,22 @@ def part_rows(events):
 
 def collect(folder):
     events = lines_of(os.path.join(folder, "parts.jsonl"))
-    with open(os.path.join(folder, "held_out.json"), encoding="utf-8") as stream:
-        run = next(iter(json.load(stream)["runs"].values()))
+    run = next(iter(read_json(os.path.join(folder, "held_out.json"))["runs"].values()))
     times = sorted(map(at, events))
     return {"runs": {}, "commit": run["commit"], "compiler": run["compiler"], "machine": run["machine"], "begun": f"{times[0]:%Y-%m-%d %H:%M}",
             "ended": f"{times[-1]:%Y-%m-%d %H:%M}", "parts": part_rows(events)}
 
 
 def run_table(stored):
-    lines = [[key, str(stored.get(name, "–"))] for key, name in (("commit", "commit"), ("compiler", "compiler"), ("machine", "machine"),
-                                                                 ("begun, UTC", "begun"), ("ended, UTC", "ended"))]
-    return table(["whole run", ""], lines)
+    return table(["whole run", ""], [[title, str(stored.get(title.partition(",")[0], UNKNOWN))]
+                                     for title in ("commit", "compiler", "machine", "begun, UTC", "ended, UTC")])
 
 
 def part_table(stored):
     rows = {row["part"]: row for row in stored.get("parts", [])}
-    lines = [[f"`experiments/tables/{part}`", what, f"{rows[part]['minutes']:.1f}" if part in rows else "–", str(rows[part]["calls"]) if part in rows else "–"]
-             for part, what in WHAT.items()]
-    return table(["part", "of what", "minutes", "calls"], lines)
+    return columns_table("part", "`experiments/tables/{part}`", {
+        "of what": "{what}", "minutes": lambda row: fixed(row.get("minutes"), 1), "calls": lambda row: str(row.get("calls", UNKNOWN))},
+        [{"part": part, "what": what} | rows.get(part, {}) for part, what in WHAT.items()])
 
 
 def tables(stored):

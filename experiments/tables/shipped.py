@@ -1,9 +1,8 @@
 """The shipped weights, which are not held out: the figures of the runs of experiments/tables/shipped, and their tables."""
 
-import json
 import os
 
-from cells import lines_of, percent, provenance, rounded, table, version_of
+from cells import lines_of, over, pair, percent, provenance, read_json, rounded, table, version_of
 from races import race_rows
 
 SETS = [31, 41]
@@ -29,8 +28,7 @@ def collect(folder):
             stored["rows"] += [{"run": name, "set": drawn} | row for row in score_rows(os.path.join(runs, f"{name}.{drawn}.json"))]
     for mission in MISSIONS:
         for name in CONDITIONS:
-            with open(os.path.join(runs, f"{mission}_{name}", "race.json"), encoding="utf-8") as stream:
-                record = json.load(stream)
+            record = read_json(os.path.join(runs, f"{mission}_{name}", "race.json"))
             stored["runs"][f"{mission}_{name}"] = provenance(record)
             stored["races"] += [{"mission": mission, "run": name} | row for row in race_rows(record)]
     return stored
@@ -38,10 +36,7 @@ def collect(folder):
 
 def together(rows):
     """The mean of each share, weighted by scenes."""
-    if not rows:
-        return None
-    scenes = sum(row["scenes"] for row in rows)
-    return {"scenes": scenes} | {key: sum(row[key] * row["scenes"] for row in rows) / scenes for key in ("usable", "iou", "trusted", "right_if_trusted")}
+    return {"scenes": sum(row["scenes"] for row in rows)} | {key: over(rows, key) for key in ("usable", "iou", "trusted", "right_if_trusted")}
 
 
 def selected(stored, run, **values):
@@ -53,13 +48,10 @@ def colour_table(stored):
     for name, label in COLOURS.items():
         run = f"colours_{name}"
         whole = together(selected(stored, run))
-        lines.append([label] + [both_digits(together(selected(stored, run, rate=rate))) for rate in RATES] +
+        cells = [together(selected(stored, run, rate=rate)) for rate in RATES]
+        lines.append([label] + [pair((cell["usable"], cell["iou"])) for cell in cells] +
                      [f"{percent(whole['right_if_trusted'])}, {percent(whole['trusted'], 0)}"])
     return table(["colours", *(f"{100 * rate:.0f} %" + (" false positives" if rate == 0.0 else "") for rate in RATES), "right where trusted, trusted"], lines)
-
-
-def both_digits(row):
-    return f"{percent(row['usable'])} / {percent(row['iou'])}"
 
 
 def uncertainty_table(stored):

@@ -1,17 +1,18 @@
 """Solvers and exactness: the figures of the runs of experiments/tables/solvers, and their tables."""
 
+import math
 import os
 import random
 import re
-import statistics
-from collections import defaultdict
+from statistics import fmean
 
-from cells import lines_of, percent, provenance, rounded, table
+from cells import UNKNOWN, columns_table, grouped, lines_of, mean, median, pair, percent, provenance, quantile, rounded, share, table
 
 RATES = [0.0, 0.1, 0.3, 0.5]
 LANES = ["beam", "candidate", "choice", "beside"]
 SUCCESSES = {"ground_truth", "near_ground_truth", "too_short", "diverging_from_20"}
-GAPS = [("none", 1e-6), ("to 1 %", 0.01), ("to 10 %", 0.1), ("above", float("inf"))]
+PROVEN = ("optimal", "infeasible")
+GAPS = [("none", 1e-6), ("to 1 %", 0.01), ("to 10 %", 0.1), ("above", math.inf)]
 DENSITIES = [4, 5, 6, 7, 10]
 EDGES = [100, 200, 300, 500, 1000]
 BEAM_KEYS = ["beam", "drop", "scenes", "best_score", "first_usable", "usable", "any_usable", "iou", "median_ms", "p95_ms", "worst_ms"]
@@ -21,26 +22,15 @@ CLAIMS = {"proven_default": "all visible", "proven_shape": "with the costs of th
           "proven_paper": "pairing `paper`", "proven_60": "60 nearest"}
 
 
-def quantile(values, share):
-    """Linear between the two nearest values."""
-    values = sorted(values)
-    place = share * (len(values) - 1)
-    low = int(place)
-    return values[low] + (place - low) * (values[min(low + 1, len(values) - 1)] - values[low])
-
-
 def backend_rows(lines):
     """One row for each solver and size; the lines of a scene have a status, those of other rows of the study have none."""
-    cells = defaultdict(list)
-    for line in lines:
-        if "scene" in line and line.get("permutation", 0) == 0:
-            cells[line["backend"], line["nearest"]].append(line)
+    cells = grouped((line for line in lines if "scene" in line and line.get("permutation", 0) == 0), ("backend", "nearest"))
     rows = []
     for (backend, nearest), cell in cells.items():
         times = [line["latency_ms"] for line in cell]
         rows.append({"table": "backends", "backend": backend, "nearest": nearest, "scenes": len(cell),
-                     "proven": sum(line["status"] in ("optimal", "infeasible") for line in cell),
-                     "median_ms": rounded(quantile(times, 0.5)), "p95_ms": rounded(quantile(times, 0.95)), "max_ms": rounded(max(times))})
+                     "proven": sum(line["status"] in PROVEN for line in cell), "median_ms": rounded(median(times)),
+                     "p95_ms": rounded(quantile(times, 0.95)), "max_ms": rounded(max(times))})
     return rows
 
 
@@ -55,61 +45,48 @@ def size_rows(lines):
 
 def proven_rows(name, lines):
     """Shares proven within 50 ms and within the limit of 1 s, by range and rate, with and without the dense course."""
-    cells = defaultdict(list)
-    for line in lines:
-        track, _, rate, distance = line["scene"].split("/")[:4]
-        cells[float(distance.removeprefix("range_")), float(rate.removeprefix("fp_"))].append((track == DENSE, line))
-    rows = []
-    for (distance, rate), cell in sorted(cells.items()):
-        for limit_ms in (50.0, 1000.0):
-            def share(lines):
-                proven = [line["status"] in ("optimal", "infeasible") and line["build_ms"] + line["solve_ms"] <= limit_ms for line in lines]
-                return rounded(sum(proven) / len(proven))
-            rows.append({"table": "proven", "claims": name, "range": distance, "rate": rate, "limit_ms": limit_ms, "scenes": len(cell),
-                         "proven": share([line for _, line in cell]), "proven_without_dense": share([line for dense, line in cell if not dense])})
-    return rows
+    def place(line):
+        _, _, rate, distance = line["scene"].split("/")[:4]
+        return float(distance.removeprefix("range_")), float(rate.removeprefix("fp_"))
+
+    def proven(cell, limit_ms):
+        return mean([float(line["status"] in PROVEN and line["build_ms"] + line["solve_ms"] <= limit_ms) for line in cell])
+    return [{"table": "proven", "claims": name, "range": distance, "rate": rate, "limit_ms": limit_ms, "scenes": len(cell),
+             "proven": proven(cell, limit_ms),
+             "proven_without_dense": proven([line for line in cell if not line["scene"].startswith(f"{DENSE}/")], limit_ms)}
+            for (distance, rate), cell in sorted(grouped(lines, place).items()) for limit_ms in (50.0, 1000.0)]
 
 
 def growth_row(lines):
     # A scene that is not proven has taken longer than any that is.
-    times = [line["cpu_ms"] if line["proven"] else float("inf") for line in lines]
-
-    def known(share):
-        value = quantile(times, share) if max(times) < float("inf") else sorted(times)[min(len(times) - 1, round(share * (len(times) - 1)))]
-        return rounded(value) if value < float("inf") else None
-    return {"scenes": len(lines), "edges": statistics.median(line["edges"] for line in lines), "median_ms": known(0.5), "p95_ms": known(0.95),
-            "nodes": rounded(statistics.fmean(line["nodes"] for line in lines)),
-            "proven": rounded(statistics.fmean(float(line["proven"]) for line in lines))}
+    times = [line["cpu_ms"] if line["proven"] else math.inf for line in lines]
+    known = {key: of for key, of in (("median_ms", median(times)), ("p95_ms", quantile(times, 0.95)))}
+    return {"scenes": len(lines), "edges": median(line["edges"] for line in lines)} | {
+        key: rounded(of) if of < math.inf else None for key, of in known.items()} | {
+        "nodes": mean(line["nodes"] for line in lines), "proven": mean(float(line["proven"]) for line in lines)}
 
 
 def growth_rows(lines):
     """By number of cones; all visible cones by density and by edges, in classes from one bound up to the next."""
-    cells = defaultdict(list)
-    for line in lines:
-        if not line["all_visible"]:
-            cells[line["cones"]].append(line)
-    rows = [{"table": "growth", "nearest": cones} | growth_row(cell) for cones, cell in sorted(cells.items())]
-    whole = [line for line in lines if line["all_visible"]]
-    for name, key, bounds in (("growth by density", "density", DENSITIES), ("growth by edges", "edges", EDGES)):
+    rows = [{"table": "growth", "nearest": cones} | growth_row(cell)
+            for (cones,), cell in sorted(grouped((line for line in lines if not line["all_visible"]), ("cones",)).items())]
+    for key, bounds in (("density", DENSITIES), ("edges", EDGES)):
         for low, high in zip([None, *bounds], [*bounds, None]):
-            cell = [line for line in whole if (low is None or line[key] >= low) and (high is None or line[key] < high)]
+            cell = [line for line in lines if line["all_visible"] and (low or -math.inf) <= line[key] < (high or math.inf)]
             if cell:
-                rows.append({"table": name, "from": low, "below": high} | growth_row(cell))
+                rows.append({"table": f"growth by {key}", "from": low, "below": high} | growth_row(cell))
     return rows
 
 
 def anytime_rows(lines):
     """The study's own table: what is known when a limit ends the search."""
-    cells = defaultdict(list)
-    for line in lines:
-        cells[line["limit_ms"]].append(line)
     rows = []
-    for limit, cell in sorted(cells.items()):
-        def close(line):
-            return "objective" in line and line["objective"] - line["best_known"] <= 0.01 * max(1.0, abs(line["best_known"]))
+    for (limit,), cell in sorted(grouped(lines, ("limit_ms",)).items()):
         unproven = [line for line in cell if not line["proven"]]
+        close = [line for line in unproven if "objective" in line and line["objective"] - line["best_known"] <= 0.01 * max(1.0, abs(line["best_known"]))]
         gaps = [line["gap"] for line in unproven if "gap" in line]
-        rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": sum(map(close, unproven)), "gap": rounded(statistics.median(gaps)) if gaps else None})
+        rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": len(close),
+                     "gap": rounded(median(gaps)) if gaps else None})
     return rows
 
 
@@ -126,79 +103,63 @@ def is_usable(line, name):
     return float(name in line and bool(line[name].get("usable")))
 
 
-def is_success(line, name):
-    return float(name in line and line[name]["category"] in SUCCESSES)
-
-
-def iou(line, name):
-    return line[name]["iou"] if name in line else 0.0
-
-
 def quality(lines, name):
-    return [rounded(statistics.fmean(is_usable(line, name) for line in lines)), rounded(statistics.fmean(iou(line, name) for line in lines))]
+    return [mean([is_usable(line, name) for line in lines]), mean([line[name]["iou"] if name in line else 0.0 for line in lines])]
 
 
 def interval(lines, value):
     """95 % of the means when courses are drawn again, with replacement."""
-    by_track = defaultdict(list)
-    for line in lines:
-        by_track[line["track"]].append(value(line))
-    tracks = sorted(by_track)
-    draw = random.Random(1)
-    means = []
+    by_track = {track: [value(line) for line in cell] for (track,), cell in sorted(grouped(lines, ("track",)).items())}
+    draw, tracks, means = random.Random(1), list(by_track), []
     for _ in range(2000):
         drawn = [by_track[draw.choice(tracks)] for _ in tracks]
         means.append(sum(map(sum, drawn)) / sum(map(len, drawn)))
-    return [rounded(quantile(means, 0.025)), rounded(quantile(means, 0.975))]
+    return [rounded(quantile(means, end)) for end in (0.025, 0.975)]
 
 
 def exactness_rows(lines):
     rows = []
     for rate in RATES:
-        both = [line for line in lines if line["false_positive_rate"] == rate and "gap" in line]
-        rows.append({"table": "exactness", "rate": rate, "scenes": len(both), "of": sum(line["false_positive_rate"] == rate for line in lines),
-                     "equal": rounded(statistics.fmean(float(line["equal"]) for line in both))} |
-                    {name: rounded(statistics.fmean(is_success(line, name) for line in both)) for name in ("optimum", "candidate", "choice")})
+        of_rate = [line for line in lines if line["false_positive_rate"] == rate]
+        both = [line for line in of_rate if "gap" in line]
+        rows.append({"table": "exactness", "rate": rate, "scenes": len(both), "of": len(of_rate), "equal": mean([float(line["equal"]) for line in both])} |
+                    {name: mean([float(name in line and line[name]["category"] in SUCCESSES) for line in both]) for name in ("optimum", "candidate", "choice")})
     return rows
 
 
-def cost_names(lines):
-    """default, shape and learned: the last objective is a file of learned costs."""
-    return {name: name if name in ("default", "shape") else "learned" for name in {line["costs"] for line in lines}}
+def costs_of(line):
+    """default, shape or learned: the last objective is a file of learned costs."""
+    return line["costs"] if line["costs"] in ("default", "shape") else "learned"
+
+
+def is_judged(line):
+    return line["status"] == "optimal" and "optimum" in line and line["optimum"].get("usable") is not None
 
 
 def objective_rows(lines):
-    names = cost_names(lines)
-    cells = defaultdict(list)
-    for line in lines:
-        if line["status"] == "optimal" and "optimum" in line and line["optimum"].get("usable") is not None:
-            cells[names[line["costs"]], line["condition"]].append(line)
+    def less(line):
+        return is_usable(line, "optimum") - is_usable(line, "beam")
     rows = []
-    for (costs, condition), cell in cells.items():
-        def less(line):
-            return is_usable(line, "optimum") - is_usable(line, "beam")
-        asked = [line for line in lines if names[line["costs"]] == costs and line["condition"] == condition and line["status"] != "infeasible"]
-        rows.append({"table": "objectives", "costs": costs, "condition": condition, "scenes": len(cell), "asked": len(asked)} |
-                    {name: quality(cell, name) for name in ["optimum"] + LANES} |
-                    {"less": rounded(statistics.fmean(map(less, cell))), "interval": interval(cell, less)})
+    for (costs, condition), cell in grouped(lines, lambda line: (costs_of(line), line["condition"])).items():
+        judged = [line for line in cell if is_judged(line)]
+        if judged:
+            rows.append({"table": "objectives", "costs": costs, "condition": condition, "scenes": len(judged),
+                         "asked": sum(line["status"] != "infeasible" for line in cell)} |
+                        {name: quality(judged, name) for name in ["optimum"] + LANES} |
+                        {"less": rounded(fmean(map(less, judged))), "interval": interval(judged, less)})
     return rows
 
 
 def gap_rows(lines):
-    names = cost_names(lines)
-    learned = [line for line in lines if names[line["costs"]] == "learned" and line["status"] == "optimal" and "optimum" in line
-               and line["optimum"].get("usable") is not None]
+    learned = [line for line in lines if costs_of(line) == "learned" and is_judged(line)]
     rows = []
     for lane in ("beam", "candidate", "beside"):
-        low = -1.0
-        for name, high in GAPS:
-            cell = [line for line in learned if lane in line and line[lane].get("gap") is not None and low < line[lane]["gap"] <= high]
-            low = high
+        cells = grouped((line for line in learned if lane in line), lambda line, lane=lane: "forbidden" if line[lane].get("gap") is None else next(
+            name for name, high in GAPS if line[lane]["gap"] <= high))
+        for name in [name for name, _ in GAPS] + ["forbidden"]:
+            cell = cells.get(name, [])
             rows.append({"table": "gaps", "lane": lane, "gap": name, "scenes": len(cell)} |
                         ({"optimum": quality(cell, "optimum"), "quality": quality(cell, lane)} if cell else {}))
-        cell = [line for line in learned if lane in line and line[lane].get("gap") is None]
-        rows.append({"table": "gaps", "lane": lane, "gap": "forbidden", "scenes": len(cell)} |
-                    ({"optimum": quality(cell, "optimum"), "quality": quality(cell, lane)} if cell else {}))
     return rows
 
 
@@ -237,71 +198,77 @@ def collect(folder):
 
 
 def milliseconds(value):
-    return "" if value is None else f"{value:.3f}" if value < 0.1 else f"{value:.2f}" if value < 1 else f"{value:.1f}" if value < 10 else f"{value:.0f}"
+    return "" if value is None else f"{value:.{3 if value < 0.1 else 2 if value < 1 else 1 if value < 10 else 0}f}"
 
 
-def pair(values):
-    return "–" if values is None else f"{percent(values[0])} / {percent(values[1])}"
+def times(*keys):
+    return lambda row: " / ".join(milliseconds(row[key]) for key in keys)
+
+
+def pivot(rows, labels, columns, cell, unknown=UNKNOWN):
+    """A line for each of `labels` (values of keys -> text), with a cell for each of `columns` (values of other keys)."""
+    def text(wanted):
+        found = next((row for row in rows if wanted.items() <= row.items()), None)
+        return unknown if found is None else cell(found)
+    return [[label] + [text(dict(values) | dict(column)) for column in columns] for values, label in labels.items()]
+
+
+def only(**values):
+    """Values of keys as a key of its own."""
+    return tuple(values.items())
 
 
 def solver_table(rows):
     names = {"path-pair": "`path-pair`, exact search", "clp-bb/tight": "`clp-bb`, tight", "cbc/tight": "`cbc`, tight",
              "cbc-main/tight": "`cbc-main`, tight", "cbc-main/paper": "`cbc-main`, as printed"}
-    lines = []
-    for backend, label in names.items():
-        cells = [next((row for row in rows if row["backend"] == backend and row["nearest"] == size), None) for size in (12, 30)]
-        lines.append([label] + ["" if cell is None else " / ".join(milliseconds(cell[key]) for key in ("median_ms", "p95_ms", "max_ms")) +
-                                f" ({cell['proven']} of {cell['scenes']})" for cell in cells])
+    lines = pivot(rows, {only(backend=backend): label for backend, label in names.items()}, [only(nearest=size) for size in (12, 30)],
+                  lambda row: f"{times('median_ms', 'p95_ms', 'max_ms')(row)} ({row['proven']} of {row['scenes']})", "")
     return table(["solver", "n = 12", "n = 30"], lines + [["RLD paper (Mosek, its own machine)", "mean 71.8, p95 156", ""]])
 
 
 def size_table(rows):
-    sizes = sorted({row["nearest"] for row in rows}, key=lambda size: size or float("inf"))  # 0: all visible cones
-    lines = []
-    for backend in dict.fromkeys(row["backend"] for row in rows):
-        cells = [next((row for row in rows if row["backend"] == backend and row["nearest"] == size), None) for size in sizes]
-        lines.append([f"`{backend}`", next(cell["version"] for cell in cells if cell)] +
-                     ["–" if cell is None else f"{milliseconds(cell['geometric_ms'])} / {milliseconds(cell['par10_ms'])} ({percent(cell['solved'] / cell['runs'])} %)"
-                      for cell in cells])
-    return table(["solver, formulation", "version", *(f"n = {size}" if size else "all visible" for size in sizes)], lines)
+    sizes = sorted({row["nearest"] for row in rows}, key=lambda size: size or math.inf)  # 0: all visible cones
+    versions = {row["backend"]: row["version"] for row in reversed(rows)}
+    lines = pivot(rows, {only(backend=row["backend"]): row["backend"] for row in rows}, [only(nearest=size) for size in sizes],
+                  lambda row: f"{milliseconds(row['geometric_ms'])} / {milliseconds(row['par10_ms'])} ({percent(row['solved'] / row['runs'])} %)")
+    return table(["solver, formulation", "version", *(f"n = {size}" if size else "all visible" for size in sizes)],
+                 [[f"`{backend}`", versions[backend], *cells] for backend, *cells in lines])
 
 
 def formulation_table(rows):
     names = {"paper": "printed rows", "tight": "tight rows"}
-    return table(["", "columns", "rows", "entries", "LP gap, mean (median)", "nodes", "median ms"],
-                 [[f"{names[row['formulation']]}, by `{row['solver']}`", f"{row['columns']:.0f}", f"{row['rows']:.0f}", f"{row['entries']:.0f}",
-                   f"{percent(row['mean_gap'], 2)} % ({percent(row['median_gap'], 2)} %)", f"{row['mean_nodes']:.1f}", milliseconds(row["median_ms"])]
-                  for row in rows])
+    return columns_table("", lambda row: f"{names[row['formulation']]}, by `{row['solver']}`", {
+        "columns": "{columns:.0f}", "rows": "{rows:.0f}", "entries": "{entries:.0f}",
+        "LP gap, mean (median)": lambda row: f"{percent(row['mean_gap'], 2)} % ({percent(row['median_gap'], 2)} %)", "nodes": "{mean_nodes:.1f}",
+        "median ms": times("median_ms")}, rows)
 
 
 def relaxation_table(rows):
-    solvers = list(dict.fromkeys(row["solver"] for row in rows))
     lines = []
-    for solver in solvers:
-        cells = [next(row for row in rows if row["solver"] == solver and row["cones"] == size) for size in (12, 30)]
-        lines.append([f"`{solver}`"] + [text for cell in cells for text in (f"{percent(cell['optimal'] / cell['feasible'])} %", milliseconds(cell["median_ms"]))])
+    for (solver,), cells in grouped(rows, ("solver",)).items():
+        of_size = {row["cones"]: [f"{percent(row['optimal'] / row['feasible'])} %", milliseconds(row["median_ms"])] for row in cells}
+        lines.append([f"`{solver}`", *of_size[12], *of_size[30]])
     return table(["", "finds the optimum, n = 12", "median ms", "finds the optimum, n = 30", "median ms"], lines)
 
 
-def growth_table(rows):
-    return table(["nearest cones", "scenes", "edges", "median ms", "p95 ms", "nodes", "proven, %"],
-                 [[str(row["nearest"]), str(row["scenes"]), f"{row['edges']:.0f}", milliseconds(row["median_ms"]), milliseconds(row["p95_ms"]),
-                   f"{row['nodes']:.2f}", percent(row["proven"])] for row in rows])
+def growth_table(rows, title="nearest cones", label="{nearest}"):
+    return columns_table(title, label, {"scenes": "{scenes}", "edges": "{edges:.0f}", "median ms": times("median_ms"), "p95 ms": times("p95_ms"),
+                          "nodes": "{nodes:.2f}", "proven, %": share("proven")}, rows)
 
 
 def class_table(rows, name):
     def label(row):
         low, high = row["from"], row["below"]
         return f"below {high}" if low is None else f"{low} and more" if high is None else f"{low} to {high}"
-    return table([name, "scenes", "edges", "median ms", "p95 ms", "nodes", "proven, %"],
-                 [[label(row), str(row["scenes"]), f"{row['edges']:.0f}", milliseconds(row["median_ms"]), milliseconds(row["p95_ms"]),
-                   f"{row['nodes']:.2f}", percent(row["proven"])] for row in rows])
+    return growth_table(rows, name, label)
 
 
 def anytime_table(rows):
-    return table(["limit", "proven", "proven or within 1 % of the best known, %", "of the open ones", "gap of the open ones, median"],
-                 [[f"{row['limit_ms']:.0f} ms", f"{row['scenes'] - row['open']} of {row['scenes']}", percent((row["scenes"] - row["open"] + row["open_close"]) / row["scenes"]),
-                   f"{row['open_close']} of {row['open']}", "–" if row["gap"] is None else f"{percent(row['gap'], 0)} %"] for row in rows])
+    return columns_table("limit", "{limit_ms:.0f} ms", {
+        "proven": lambda row: f"{row['scenes'] - row['open']} of {row['scenes']}",
+        "proven or within 1 % of the best known, %": lambda row: percent((row["scenes"] - row["open"] + row["open_close"]) / row["scenes"]),
+        "of the open ones": "{open_close} of {open}",
+        "gap of the open ones, median": lambda row: UNKNOWN if row["gap"] is None else f"{percent(row['gap'], 0)} %"}, rows)
 
 
 def certificate_table(rows):
@@ -315,55 +282,50 @@ def beam_table(rows):
     def label(row):
         text = f"{row['beam']}, {row['drop']:.0f}"
         return f"**{text}**" if row["beam"] == BEAM else text
-    return table(["beam, drop", "best score, %", "usable by score, %", "usable, judged, %", "any of 20 usable, %", "IoU, %", "median / p95 / longest ms"],
-                 [[label(row)] + [percent(row[key]) for key in ("best_score", "first_usable", "usable", "any_usable", "iou")] +
-                  [" / ".join(milliseconds(row[key]) for key in ("median_ms", "p95_ms", "worst_ms"))] for row in rows])
+    return columns_table("beam, drop", label, {
+        "best score, %": share("best_score"), "usable by score, %": share("first_usable"), "usable, judged, %": share("usable"),
+        "any of 20 usable, %": share("any_usable"), "IoU, %": share("iou"), "median / p95 / longest ms": times("median_ms", "p95_ms", "worst_ms")}, rows)
 
 
 def proven_table(rows):
-    places = [(distance, rate) for distance in (30.0, 50.0) for rate in (0.0, 0.3, 0.5)]
-    lines = []
-    for claims, label in CLAIMS.items():
-        for limit_ms, limit in ((50.0, "50 ms"), (1000.0, "1 s")):
-            cells = [next(row for row in rows if (row["claims"], row["limit_ms"], row["range"], row["rate"]) == (claims, limit_ms, *place))
-                     for place in places]
-            lines.append([f"{label}, {limit}"] + [f"{percent(cell['proven'])} ({percent(cell['proven_without_dense'])})" for cell in cells])
-    return table(["cones and costs, limit", "30 m, no false cones", "30 %", "50 %", "50 m, none", "30 %", "50 %"], lines)
+    labels = {only(claims=claims, limit_ms=limit_ms): f"{label}, {limit}" for claims, label in CLAIMS.items()
+              for limit_ms, limit in ((50.0, "50 ms"), (1000.0, "1 s"))}
+    return table(["cones and costs, limit", "30 m, no false cones", "30 %", "50 %", "50 m, none", "30 %", "50 %"],
+                 pivot(rows, labels, [only(range=distance, rate=rate) for distance in (30.0, 50.0) for rate in (0.0, 0.3, 0.5)],
+                       lambda row: f"{percent(row['proven'])} ({percent(row['proven_without_dense'])})"))
 
 
 def confidence_table(rows):
     rates = sorted({row["false_positive_rate"] for row in rows})
-    lines = []
-    for known in dict.fromkeys(row["known"] for row in rows):
-        cells = [next(row for row in rows if row["known"] == known and row["false_positive_rate"] == rate) for rate in rates]
-        lines.append([known] + [percent(cell["accurate"]) for cell in cells] + [percent(cells[-1]["success"])])
+    labels = {only(known=row["known"]): row["known"] for row in rows}
+    accurate, success = ([only(false_positive_rate=rate) for rate in some] for some in (rates, rates[-1:]))
     header = [f"accurate at {percent(rate, 0 if rate in (0.0, 0.5) else 1)} %" for rate in rates]
-    return table(["", *header, f"success at {percent(rates[-1], 0)} %"], lines)
+    return table(["", *header, f"success at {percent(rates[-1], 0)} %"],
+                 [first + last[1:] for first, last in zip(pivot(rows, labels, accurate, share("accurate")), pivot(rows, labels, success, share("success")))])
 
 
 def exactness_table(rows):
-    labels = [("scenes with both", lambda row: f"{row['scenes']} of {row['of']}"), ("the candidate is the optimum, % of these", lambda row: percent(row["equal"])),
-              ("success of the optimum, %", lambda row: percent(row["optimum"])), ("success of that candidate, %", lambda row: percent(row["candidate"])),
-              ("success of what CLC's network chooses, %", lambda row: percent(row["choice"]))]
-    return table(["false positives"] + [f"{100 * row['rate']:.0f} %" for row in rows], [[label] + [text(row) for row in rows] for label, text in labels])
+    labels = {"scenes with both": "{scenes} of {of}".format_map, "the candidate is the optimum, % of these": share("equal"),
+              "success of the optimum, %": share("optimum"), "success of that candidate, %": share("candidate"),
+              "success of what CLC's network chooses, %": share("choice")}
+    return table(["false positives"] + [f"{100 * row['rate']:.0f} %" for row in rows], [[label] + list(map(text, rows)) for label, text in labels.items()])
 
 
 def objective_table(rows):
     names = {"default": "(29)", "shape": "shape", "learned": "learned"}
-    return table(["objective", "condition", "scenes", "optimum", "beam", "CLC's best by it", "CLC", "`front`", "optimum less beam, usable"],
-                 [[names[row["costs"]], f"`{row['condition']}`", f"{row['scenes']} of {row['asked']}"] + [pair(row[name]) for name in ["optimum"] + LANES] +
-                  [f"{percent(row['less'])} ({percent(row['interval'][0])} to {percent(row['interval'][1])})"]
-                  for condition in ("paper", "car") for costs in names for row in rows if (row["costs"], row["condition"]) == (costs, condition)])
+    order = sorted(rows, key=lambda row: (("paper", "car").index(row["condition"]), list(names).index(row["costs"])))
+    lanes = dict(zip(["optimum", *LANES], ("optimum", "beam", "CLC's best by it", "CLC", "`front`")))
+    return columns_table("objective", lambda row: names[row["costs"]], {
+        "condition": "`{condition}`", "scenes": "{scenes} of {asked}"} | {
+        title: lambda row, name=name: pair(row[name]) for name, title in lanes.items()} | {
+        "optimum less beam, usable": lambda row: f"{percent(row['less'])} ({percent(row['interval'][0])} to {percent(row['interval'][1])})"}, order)
 
 
 def gap_table(rows):
     lines = []
-    for gap in [name for name, _ in GAPS] + ["forbidden"]:
-        line = [gap if gap != "forbidden" else "forbidden by the rows"]
-        for lane in ("beam", "candidate", "beside"):
-            cell = next(row for row in rows if row["lane"] == lane and row["gap"] == gap)
-            line += [str(cell["scenes"]), pair(cell.get("optimum")), pair(cell.get("quality"))]
-        lines.append(line)
+    for (gap,), cells in grouped(rows, ("gap",)).items():
+        of_lane = {row["lane"]: [str(row["scenes"]), pair(row.get("optimum")), pair(row.get("quality"))] for row in cells}
+        lines.append(["forbidden by the rows" if gap == "forbidden" else gap] + of_lane["beam"] + of_lane["candidate"] + of_lane["beside"])
     return table(["gap", "beam: scenes", "its optimum", "its lane", "CLC's best: scenes", "its optimum", "its lane", "`front`: scenes", "its optimum", "its lane"],
                  lines)
 

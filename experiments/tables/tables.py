@@ -19,7 +19,7 @@ import parameter_sets
 import reproduce
 import shipped
 import solvers
-from cells import table
+from cells import InputError, read_json, table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STORED = os.path.join(ROOT, "docs", "benchmarks")
@@ -47,18 +47,18 @@ def stored_file(kind):
 
 def runs_table(runs):
     """The runs of each commit, compiler and machine."""
+    machines = {(run["commit"], run["compiler"]): run["machine"] for run in reversed(runs.values()) if run["machine"]}
     by_origin = {}
     for name, run in sorted(runs.items(), key=lambda item: item[1]["machine"] == ""):
-        origin = (run["commit"], run["compiler"], run["machine"])
-        if run["machine"] == "":  # no record of it, so that of another run of the program
-            origin = next((known for known in by_origin if known[:2] == origin[:2]), origin)
-        by_origin.setdefault(origin, []).append(f"`{name}`")
+        build = (run["commit"], run["compiler"])
+        # Where there is no record of it, the machine is that of another run of the program.
+        by_origin.setdefault((*build, run["machine"] or machines.get(build, "")), []).append(f"`{name}`")
     return table(["commit", "compiler", "machine", "runs"], [[*origin, ", ".join(names)] for origin, names in by_origin.items()])
 
 
 def stored_figures():
     """By kind; nothing for a file that is missing, as there may be figures without a whole run."""
-    return {kind: json.loads(read(stored_file(kind))) if os.path.exists(stored_file(kind)) else {} for kind in KINDS}
+    return {kind: read_json(stored_file(kind)) if os.path.exists(stored_file(kind)) else {} for kind in KINDS}
 
 
 def all_tables(stored):
@@ -138,4 +138,7 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except InputError as error:
+        raise SystemExit(f"tables.py: {error}") from None

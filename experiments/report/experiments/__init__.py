@@ -1,9 +1,11 @@
 """The experiments by the sections of the page that show them."""
 
-from . import (anytime, by_track, calibration, clc_fig_9, clc_fig_11, clc_fig_12, clc_fig_15, clc_fig_16, clc_table_1,
-               clc_table_2, confidence_and_colour, exact_backends, failure_causes, formulations, growth, latency,
-               optimality, outcomes, outside, paired_latency, performance_profiles, quality, race, relaxations, rld_fig_5,
-               rld_fig_6, rld_fig_7, same_cone_set, solver_measures, steering, update_or_rebuild, warm_start)
+from .clc_paper import clc_fig_9, clc_fig_11, clc_fig_12, clc_fig_15, clc_fig_16, clc_table_1, clc_table_2
+from .comparison import by_track, calibration, failure_causes, latency, outcomes, outside, quality, steering
+from .exactness import anytime, confidence_and_colour, formulations, growth, optimality, relaxations, update_or_rebuild
+from .rld_paper import rld_fig_5, rld_fig_6, rld_fig_7
+from .solvers import exact_backends, solver_measures, warm_start
+from .speed import paired_latency, performance_profiles, race, same_cone_set
 
 COMPARISON = (quality, steering, calibration, latency, outcomes, by_track, outside)
 RACE = (race,)

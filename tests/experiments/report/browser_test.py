@@ -17,16 +17,16 @@ addEventListener("unhandledrejection", (event) => problems.push(String(event.rea
 console.error = (...words) => problems.push(words.join(" "));
 // Every line that is drawn, with its dashes.
 const strokes = { lines: [], points: [] };
-const drawing = CanvasRenderingContext2D.prototype;
+const contexts = CanvasRenderingContext2D.prototype;
 const observe = (name, before) => {
-  const original = drawing[name];
-  drawing[name] = function (...values) { before.call(this, ...values); return original.apply(this, values); };
+  const original = contexts[name];
+  contexts[name] = function (...values) { before.call(this, ...values); return original.apply(this, values); };
 };
 observe("beginPath", () => { strokes.points = []; });
 observe("moveTo", (x, y) => strokes.points.push([x, y]));
 observe("lineTo", (x, y) => strokes.points.push([x, y]));
 observe("stroke", function () {
-  strokes.lines.push({ canvas: this.canvas.id, dash: this.getLineDash().join(), width: this.lineWidth, style: this.strokeStyle, points: strokes.points });
+  strokes.lines.push({ canvas: this.canvas.id, element: this.canvas, dash: this.getLineDash().join(), width: this.lineWidth, style: this.strokeStyle, points: strokes.points });
 });
 </script>"""
 
@@ -49,7 +49,7 @@ addEventListener("load", async () => {
     }
     const narrow = [...document.querySelectorAll("#methods figure")].filter((one) => one.getBoundingClientRect().width < 150);
     check(narrow.length === 0, "the pictures of the methods have room");
-    check(document.querySelector("#cone-lane svg").getBoundingClientRect().height > 80, "what a cone lane is, is shown");
+    check(document.querySelector("#cone-lane canvas").getBoundingClientRect().height > 80, "what a cone lane is, is shown");
     const sorter = document.querySelector("#headline thead button");
     sorter.focus();
     check(document.activeElement === sorter, "a column's title takes the focus of the keyboard");
@@ -64,6 +64,15 @@ addEventListener("load", async () => {
     check(toggles.map((toggle) => toggle.checked).join() === "true,false,false", "the best method alone is on at first");
     const redrawn = () => { strokes.lines = []; dispatchEvent(new Event("resize")); return strokes.lines; };
     const hex = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    const { frames } = JSON.parse(document.getElementById("scene-data").textContent);
+    const pictures = [...document.querySelectorAll("canvas[data-slot]")];
+    document.dispatchEvent(new Event("themechange"));
+    const empty = pictures.filter((canvas) => {
+      const answer = frames[canvas.dataset.scene].a[canvas.dataset.slot];
+      const lane = strokes.lines.filter((line) => line.element === canvas && line.style === hex("--left") && line.points.length > 1);
+      return answer && answer[0].length > 1 && lane.length === 0;
+    });
+    check(pictures.length > 3 && empty.length === 0, "each small picture shows its lane: " + empty.map((canvas) => canvas.dataset.scene));
     const drawnIn = (name) => redrawn().some((line) => line.canvas === "view-scene" && line.style === hex(name) && line.points.length > 2);
     check(drawnIn("--left") && drawnIn("--right"), "its boundaries have two colours");
     for (const toggle of toggles.slice(1)) toggle.click();
@@ -91,7 +100,7 @@ addEventListener("load", async () => {
     slider.dispatchEvent(new Event("input"));
     check(box.dataset.scene.startsWith("circle/"), "the chosen track is shown");
 
-    const { frames, marks } = JSON.parse(document.getElementById("scene-data").textContent);
+    const marks = JSON.parse(document.getElementById("marks").textContent);
     const answers = frames[box.dataset.scene].a; // see with_uncertain_answers
     const lines = () => strokes.lines.filter((line) => line.canvas === "view-scene");
     const inferred = lines().filter((line) => line.dash === marks.inferred.dash.join());

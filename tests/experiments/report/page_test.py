@@ -85,17 +85,50 @@ def report(results, page, *options):
                           text=True, check=False)
 
 
-def lines(name):
-    with open(os.path.join(RESULTS, name), encoding="utf-8") as stream:
-        return [json.loads(line) for line in stream]
+def read(*path):
+    with open(os.path.join(*path), encoding="utf-8") as stream:
+        return stream.read()
+
+
+def write(text, *path):
+    with open(os.path.join(*path), "w", encoding="utf-8") as stream:
+        stream.write(text)
+
+
+def lines(name, folder=RESULTS):
+    return [json.loads(line) for line in read(folder, name).splitlines()]
+
+
+def label(line):
+    return line["method"] + (f" n={line['nearest']}" if "nearest" in line else "")
+
+
+def part(text, kind, name):
+    """A table or a figure of the page."""
+    end = {"table": "</table>", "figure": "</figure>"}[kind]
+    begin = f'<div class="table" id="{name}">' if kind == "table" else f'<figure id="{name}"[^>]*>'
+    return re.search(rf"{begin}.*?{end}", text, flags=re.S)[0]
+
+
+def viewer_data(text):
+    return json.loads(re.search(r'<script type="application/json" id="scene-data">(.*?)</script>', text, flags=re.S)[1])
 
 
 class ReportPage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        with open(os.path.join(RESULTS, "page.html"), encoding="utf-8") as stream:
-            cls.text = stream.read()
+        cls.text = read(RESULTS, "page.html")
         cls.page = Page(cls.text)
+
+    def made_of_copy(self, change):
+        """The page that is made of a changed copy of the results; `change` is of its folder."""
+        with tempfile.TemporaryDirectory() as folder:
+            copy, page = os.path.join(folder, "copy"), os.path.join(folder, "page.html")
+            shutil.copytree(RESULTS, copy)
+            change(copy)
+            done = report(copy, page)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            return read(page)
 
     def test_is_well_formed_and_stands_alone(self):
         self.assertEqual(self.page.wrong, [])
@@ -163,7 +196,7 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(intro.count('class="headline"'), 1)  # what a cone lane is, what is compared, the answer
         self.assertIn("A <b>cone lane</b> is", intro)
         self.assertRegex(intro, r"Compared: 3 methods on the same \d+ scenes of 2 tracks")
-        self.assertIn('<path class="lane left"', re.search(r'<figure id="cone-lane".*?</figure>', intro, flags=re.S)[0])
+        self.assertIn('<canvas data-scene="', re.search(r'<figure id="cone-lane".*?</figure>', intro, flags=re.S)[0])
         for hint in ("nothing disturbed, n\u00a0=\u00a0", "cones off by 0.1 m, pose by 0.3 m and 5°, 5 % missed, n\u00a0=\u00a0"):
             self.assertIn(f'<small class="hint">{hint}', first)  # the conditions beside their columns
         self.assertEqual(first.count("<table"), 1)  # one table
@@ -172,9 +205,8 @@ class ReportPage(unittest.TestCase):
         scores = lines("scores.jsonl")
         usable = {}
         for line in scores:
-            label = line["method"] + (f" n={line['nearest']}" if "nearest" in line else "")
-            usable.setdefault(label, []).append(line["usable"])
-        shares = [sum(usable[label]) / len(usable[label]) for label in rows]
+            usable.setdefault(label(line), []).append(line["usable"])
+        shares = [sum(usable[name]) / len(usable[name]) for name in rows]
         self.assertEqual(shares, sorted(shares, reverse=True))  # the best comes first
         shown = [float(values[0]) for key, values in self.page.cells.items() if key[0] == "headline"]
         for share, value in zip(shares, shown):
@@ -182,23 +214,23 @@ class ReportPage(unittest.TestCase):
         cards = re.findall(r'<figure class="scene" data-method="([^"]*)">(.*?)</figure>', first, flags=re.S)
         self.assertEqual(sorted(name for name, _ in cards), sorted(rows))
         for name, card in cards:
-            self.assertIn("<svg", card)
             self.assertRegex(card, rf"<b>{name}</b> [A-Z]")
             self.assertRegex(card, r"<br>Here: [a-z]")
-        self.assertEqual(len(set(re.findall(r'viewBox="([^"]*)"', first))), 1)  # one scene at one zoom
+        drawn = re.findall(r'<canvas data-scene="([^"]*)" data-slot="(\d)" data-zoom=all>', first)
+        self.assertEqual([int(slot) for _, slot in drawn], list(range(len(cards))))
+        self.assertEqual(len({scene for scene, _ in drawn}), 1)  # one scene at one zoom
         self.assertIn("Robust Lane Detection with Binary Integer Optimization", first)
         self.assertIn("Lane Detection using Graph Search and Geometric Constraints for Formula Student Driverless", first)
 
     def test_tables_have_the_best_method_first(self):
-        best = re.findall(r'<tr data-method="([^"]*)">', re.search(r'<div class="table" id="headline">.*?</table>', self.text,
-                                                                   flags=re.S)[0])
+        best = re.findall(r'<tr data-method="([^"]*)">', part(self.text, "table", "headline"))
         for table in ("quality", "steering", "latencies", "categories", "failure-causes"):
             of_table = [key[1] for key in self.page.cells if key[0] == table]
             self.assertEqual(list(dict.fromkeys(of_table)), best, table)
 
     def test_one_legend_serves_the_figures_of_a_group(self):
         for name in ("usable-by-rate-paper", "success-by-rate", "iou-by-rate", "latency-by-rate"):
-            figure = re.search(rf'<figure id="{name}".*?</figure>', self.text, flags=re.S)[0]
+            figure = part(self.text, "figure", name)
             self.assertNotIn(f'id="{name}-legend_1"', figure)
         keys = re.findall(r'<p class="method-key">(.*?)</p>', self.text, flags=re.S)
         self.assertEqual(len(keys), 2)  # of quality and latency; no method here says how sure it is
@@ -207,34 +239,25 @@ class ReportPage(unittest.TestCase):
 
     def test_every_share_says_of_how_many(self):
         for table in ("headline", "by-rate", "by-track", "failure-causes", "quality", "categories"):
-            head = re.search(rf'<div class="table" id="{table}">.*?</thead>', self.text, flags=re.S)[0]
-            self.assertIn(">scenes</button>", head, table)
+            self.assertIn(">scenes</button>", part(self.text, "table", table), table)
         for name in ("usable-by-rate-car", "success-by-rate", "latency-by-rate"):
-            figure = re.search(rf'<figure id="{name}".*?</figure>', self.text, flags=re.S)[0]
+            figure = part(self.text, "figure", name)
             self.assertRegex(figure, r"n = \d+ scenes a point\.")
 
     def test_a_time_that_the_limit_ended_is_named_a_limit(self):
-        with tempfile.TemporaryDirectory() as folder:
-            copy, page = os.path.join(folder, "copy"), os.path.join(folder, "page.html")
-            shutil.copytree(RESULTS, copy)
-            with open(os.path.join(copy, "run.json"), encoding="utf-8") as stream:
-                run = json.load(stream)
-            longest = max(line["latency_ms"] for line in lines("scores.jsonl"))
-            for limit_ms in (longest, 2 * longest):
-                with open(os.path.join(copy, "run.json"), "w", encoding="utf-8") as stream:
-                    json.dump(run | {"time_limit_ms": limit_ms}, stream)
-                self.assertEqual(report(copy, page).returncode, 0)
-                with open(page, encoding="utf-8") as stream:
-                    text = stream.read()
-                self.assertEqual("<small>limit</small>" in text, limit_ms == longest)
-                self.assertEqual(" ended the search, which would have taken longer." in text, limit_ms == longest)
+        longest = max(line["latency_ms"] for line in lines("scores.jsonl"))
+        for limit_ms in (longest, 2 * longest):
+            run = json.loads(read(RESULTS, "run.json")) | {"time_limit_ms": limit_ms}
+            text = self.made_of_copy(lambda copy, run=run: write(json.dumps(run), copy, "run.json"))
+            self.assertEqual("<small>limit</small>" in text, limit_ms == longest)
+            self.assertEqual(" ended the search, which would have taken longer." in text, limit_ms == longest)
 
     def test_every_method_of_the_program_is_explained(self):
         listed = subprocess.run([PROGRAM, "methods", "--all"], capture_output=True, text=True, check=True).stdout
         names = [line.split()[0] for line in listed.splitlines()]
         self.assertGreater(len(names), 10)
         for name in names:
-            self.assertTrue(described(None, name).line, name)
+            self.assertTrue(described(None, name)[0], name)
 
     def test_methods_of_different_objectives_are_never_said_to_agree(self):
         exactness = re.search(r'<section id="exactness">(.*?)</section>', self.text, flags=re.S)[1]
@@ -242,14 +265,13 @@ class ReportPage(unittest.TestCase):
             self.assertFalse("rld-pair" in names and "rld-shape" in names, names)
 
     def test_no_paired_ratio_is_below_one(self):
-        table = re.search(r'<div class="table" id="ratios">(.*?)</table>', self.text, flags=re.S)[1]
-        ratios = [float(value) for value in re.findall(r'<td class="number" data-value="([\d.]+)">\d+\.\d\d <small>', table)]
+        ratios = [float(value) for value in re.findall(r'<td class="number" data-value="([\d.]+)">\d+\.\d\d <small>',
+                                                       part(self.text, "table", "ratios"))]
         self.assertGreater(len(ratios), 2)
         self.assertGreaterEqual(min(ratios), 1.0)
 
     def test_choosing_a_method_reaches_the_curves(self):
-        figure = re.search(r'<figure id="success-by-rate">.*?</figure>', self.text, flags=re.S)[0]
-        self.assertEqual(set(re.findall(r'<g data-curve="([^"]*)"', figure)), {"rld-cbc", "rld-pair", "clc"})
+        self.assertEqual(set(re.findall(r'<g data-curve="([^"]*)"', part(self.text, "figure", "success-by-rate"))), {"rld-cbc", "rld-pair", "clc"})
 
     def test_stored_exactness_is_what_is_shown(self):
         stored = [line for line in lines("optimality.jsonl") if "gap" in line and line["costs"] == "default"]
@@ -259,22 +281,13 @@ class ReportPage(unittest.TestCase):
         self.assertIn(f"n = 6: 0 of {len(scenes)} scenes", self.text)
 
     def test_solves_of_all_visible_cones_are_a_size(self):
-        def article(text, title):
-            return next(part for part in re.findall(r'<article class="experiment.*?</article>', text, flags=re.S) if f"<h3>{title}</h3>" in part)
-        with tempfile.TemporaryDirectory() as folder:
-            copy, page = os.path.join(folder, "copy"), os.path.join(folder, "page.html")
-            shutil.copytree(RESULTS, copy)
-            stored = lines("backends.jsonl")
-            with open(os.path.join(copy, "backends.jsonl"), "w", encoding="utf-8") as stream:
-                for line in stored + [line | {"nearest": 0} for line in stored]:
-                    stream.write(json.dumps(line) + "\n")
-            self.assertEqual(report(copy, page).returncode, 0)
-            with open(page, encoding="utf-8") as stream:
-                text = stream.read()
+        stored = lines("backends.jsonl")
+        text = self.made_of_copy(lambda copy: write("".join(json.dumps(line) + "\n" for line in stored + [
+            line | {"nearest": 0} for line in stored]), copy, "backends.jsonl"))
         ids = Page(text).ids
         for name in ("backends-profile", "solver-profile", "solver-primal-gap", "solver-dual-gap"):
             self.assertTrue({f"{name}-6", f"{name}-all"} <= set(ids), name)
-        measures = article(text, "Measures of solvers")
+        measures = next(one for one in re.findall(r'<article class="experiment.*?</article>', text, flags=re.S) if "<h3>Measures of solvers</h3>" in one)
         summaries = [line for line in stored if line.get("row") == "summary"]
         for group in {f"all {line.get('condition', '')}".strip() for line in summaries}:
             self.assertGreaterEqual(len(re.findall(rf">{group}</t[dh]>", measures)), 2, group)
@@ -305,8 +318,7 @@ class ReportPage(unittest.TestCase):
     def test_numbers_are_those_of_the_results(self):
         checked = 0
         for row in lines("results.jsonl"):
-            label = row["method"] + (f" n={row['nearest']}" if "nearest" in row else "")
-            key = (label, row["condition"], row["false_positive_rate"], row["range"])
+            key = (label(row), row["condition"], row["false_positive_rate"], row["range"])
             stored = {"quality": {k: row.get(k) for k in ("usable_share", "success_share", "mean_iou",
                                                           "accurate_share", "solved_share", "complete_share")},
                       "steering": {k: row.get(k) for k in ("lateral_median_m", "lateral_p95_m", "heading_median_rad",
@@ -327,8 +339,7 @@ class ReportPage(unittest.TestCase):
         self.assertGreater(checked, 12 * 14)
 
     def test_scenes_are_those_of_the_lanes(self):
-        found = re.search(r'<script type="application/json" id="scene-data">(.*?)</script>', self.text, flags=re.S)
-        data = json.loads(found[1])
+        data = viewer_data(self.text)
         scored = {line["scene"] for line in lines("scores.jsonl")}
         self.assertEqual(set(data["frames"]), scored)
         self.assertEqual({scene for lap in data["laps"] for scene in lap["scenes"]}, scored)
@@ -352,24 +363,15 @@ class ReportPage(unittest.TestCase):
             again = os.path.join(folder, "again.html")
             done = report(RESULTS, again)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
-            with open(again, encoding="utf-8") as stream:
-                self.assertEqual(stream.read(), self.text)
+            self.assertEqual(read(again), self.text)
             self.assertEqual(os.listdir(folder), ["again.html"])
 
     def test_says_how_many_scenes_are_left_out(self):
         self.assertNotIn("left out everywhere", self.text)
-        with tempfile.TemporaryDirectory() as folder:
-            copy, page = os.path.join(folder, "copy"), os.path.join(folder, "page.html")
-            shutil.copytree(RESULTS, copy)
-            tracks = os.path.join(copy, "scenes.tracks.json")
-            with open(tracks, encoding="utf-8") as stream:
-                stored = json.load(stream)
-            stored["circle"]["left_out"] = ["circle/pose_0001/fp_0.00/range_30", "circle/pose_0002/fp_0.00/range_30"]
-            with open(tracks, "w", encoding="utf-8") as stream:
-                json.dump(stored, stream)
-            self.assertEqual(report(copy, page).returncode, 0)
-            with open(page, encoding="utf-8") as stream:
-                self.assertIn("<li>2 scenes are left out everywhere: the ground truth is degenerate", stream.read())
+        stored = json.loads(read(RESULTS, "scenes.tracks.json"))
+        stored["circle"]["left_out"] = ["circle/pose_0001/fp_0.00/range_30", "circle/pose_0002/fp_0.00/range_30"]
+        self.assertIn("<li>2 scenes are left out everywhere: the ground truth is degenerate",
+                      self.made_of_copy(lambda copy: write(json.dumps(stored), copy, "scenes.tracks.json")))
 
     def refused(self, results, page, *options):
         done = report(results, page, *options)
@@ -386,9 +388,7 @@ class ReportPage(unittest.TestCase):
             self.assertIn("matplotlib", self.refused(RESULTS, page, "--python", os.path.join(folder, "no-python")))
             copy = os.path.join(folder, "copy")
             shutil.copytree(RESULTS, copy)
-            scores = os.path.join(copy, "scores.jsonl")
-            with open(scores, encoding="utf-8") as stream:
-                whole = stream.read().splitlines(keepends=True)
+            whole = read(RESULTS, "scores.jsonl").splitlines(keepends=True)
             for change, complaint in ((lambda rows: rows[:-1], "scores of"),
                                       (lambda rows: [rows[0].replace('"cones"', '"bones"')] + rows[1:],
                                        ":1: cones: is missing"),
@@ -398,11 +398,9 @@ class ReportPage(unittest.TestCase):
                                       (lambda rows: [rows[0].replace('"range"', '"cause":"bad luck","range"')] +
                                        rows[1:], ":1: cause: there is no 'bad luck'"),
                                       (lambda rows: rows[:2] + ["{\n"] + rows[3:], "scores.jsonl:3: ")):
-                with open(scores, "w", encoding="utf-8") as stream:
-                    stream.writelines(change(whole))
+                write("".join(change(whole)), copy, "scores.jsonl")
                 self.assertIn(complaint, self.refused(copy, page))
-            with open(scores, "w", encoding="utf-8") as stream:
-                stream.writelines(whole)
+            write("".join(whole), copy, "scores.jsonl")
             for name, text, complaint in (("optimality.jsonl", '{"scene": "a"}\n', "optimality.jsonl:1: track: "),
                                           ("backends.jsonl", "[]\n", "backends.jsonl:1: "),
                                           ("anytime.jsonl", '{"scene": "a"}\n', "anytime.jsonl:1: limit_ms"),
@@ -410,21 +408,16 @@ class ReportPage(unittest.TestCase):
                                           ("formulations.jsonl", '{"cones": 6}\n', "formulations.jsonl:1: formulation"),
                                           ("relaxations.jsonl", '{"cones": 6}\n', "relaxations.jsonl:1: solver"),
                                           ("confidence-and-colour.jsonl", '{"known": "a"}\n', "confidence-and-colour.jsonl:1: false_positive_rate"),
-                                          ("benchmarks.json", '{"benchmarks": [{}]}', "benchmarks.json")):
-                with open(os.path.join(copy, name), "w", encoding="utf-8") as stream:
-                    stream.write(text)
+                                          ("benchmarks.json", '{"benchmarks": [{}]}', "benchmarks.json"),
+                                          ("race/race.json", "{", "race.json: "), ("race/race.json", "{}", "race.json: races"),
+                                          ("race/race.json", '{"races": [{}]}', "races[0].track"),
+                                          ("race/replay.jsonl", '{"frames": 1}\n', "replay.jsonl:1: frames")):
+                before = read(copy, name) if os.path.exists(os.path.join(copy, name)) else ""
+                write(text, copy, name)
                 self.assertIn(complaint, self.refused(copy, page))
-                os.unlink(os.path.join(copy, name))
-            for name, text, complaint in (("race.json", "{", "race.json: "), ("race.json", "{}", "race.json: races"),
-                                          ("race.json", '{"races": [{}]}', "races[0].track"),
-                                          ("replay.jsonl", '{"frames": 1}\n', "replay.jsonl:1: frames")):
-                with open(os.path.join(copy, "race", name), encoding="utf-8") as stream:
-                    whole = stream.read()
-                with open(os.path.join(copy, "race", name), "w", encoding="utf-8") as stream:
-                    stream.write(text)
-                self.assertIn(complaint, self.refused(copy, page))
-                with open(os.path.join(copy, "race", name), "w", encoding="utf-8") as stream:
-                    stream.write(whole)
+                write(before, copy, name)
+                if not before:
+                    os.unlink(os.path.join(copy, name))
             os.unlink(os.path.join(copy, "run.json"))
             self.assertIn("run.json", self.refused(copy, page))
 
@@ -434,9 +427,8 @@ class ReportPage(unittest.TestCase):
         blocks = {(line["method"], line["condition"], line["false_positive_rate"]) for line in scores}
         self.assertEqual({key[2:] for key in rows}, {block[1:] for block in blocks})
         self.assertEqual(len(rows), len(blocks))
-        for (_, label, condition, rate), cells in rows.items():
-            of_row = [line for line in scores if (line["condition"], line["false_positive_rate"]) == (condition, rate)
-                      and label in (line["method"], f"{line['method']} n={line.get('nearest')}")]
+        for (_, *key), cells in rows.items():
+            of_row = [line for line in scores if [label(line), line["condition"], line["false_positive_rate"]] == key]
             usable = sum(line["usable"] for line in of_row) / len(of_row)
             exact = sum(line["category"] == "ground_truth" for line in of_row) / len(of_row)
             self.assertAlmostEqual(float(cells[0]), usable)
@@ -447,15 +439,13 @@ class ReportPage(unittest.TestCase):
     def test_causes_are_those_of_the_scores(self):
         causes = {}
         for line in lines("scores.jsonl"):
-            label = line["method"] + (f" n={line['nearest']}" if "nearest" in line else "")
             self.assertEqual("cause" in line, not line["usable"], line)
             if "cause" in line:
-                of_method = causes.setdefault((label, line["condition"]), {})
+                of_method = causes.setdefault((label(line), line["condition"]), {})
                 of_method[line["cause"]] = of_method.get(line["cause"], 0) + 1
         self.assertGreater(len(causes), 2)
-        for (label, condition), of_method in causes.items():
-            shown = next(values for key, values in self.page.rows.items()
-                         if key[:3] == ("failure-causes", label, condition))
+        for method, of_method in causes.items():
+            shown = next(values for key, values in self.page.rows.items() if key[:3] == ("failure-causes", *method))
             for cause, count in of_method.items():
                 self.assertAlmostEqual(float(shown[cause][0]), count / sum(of_method.values()))
 
@@ -463,10 +453,10 @@ class ReportPage(unittest.TestCase):
         scores = {(line["method"], line["scene"]): line for line in lines("scores.jsonl")}
         found = re.findall(r'<details class="worst" open data-method="([^"]*)" data-condition="([^"]*)">(.*?)</details>',
                            self.text, flags=re.S)
-        self.assertEqual({(label.partition(" n=")[0], condition) for label, condition, _ in found},
+        self.assertEqual({(name.partition(" n=")[0], condition) for name, condition, _ in found},
                          {(line["method"], line["condition"]) for line in scores.values() if not line["usable"]})
-        for label, condition, content in found:
-            method = label.partition(" n=")[0]
+        for name, condition, content in found:
+            method = name.partition(" n=")[0]
             shown = re.findall(r'data-open="([^"]*)"', content)
             tracks = [scores[method, scene]["track"] for scene in shown]
             self.assertTrue(0 < len(shown) <= 10 and all(tracks.count(track) <= 2 for track in tracks))
@@ -477,25 +467,15 @@ class ReportPage(unittest.TestCase):
                      and not line["usable"]]
             self.assertEqual(ranks[0], min(line["iou"] for line in wrong))
             self.assertRegex(content, rf"<small>(\d+ of )?{len(wrong)} lane")
-            self.assertEqual(content.count("<svg"), len(shown))
+            self.assertEqual(re.findall(r'<canvas data-scene="([^"]*)"', content), shown)
 
     def test_experiments_take_other_comparisons_from_beside(self):
-        with tempfile.TemporaryDirectory() as folder:
-            copy = os.path.join(folder, "copy")
-            shutil.copytree(RESULTS, copy)
+        def move_candidates(copy):
+            scores = read(copy, "scores.jsonl")
             os.mkdir(os.path.join(copy, "candidates"))
-            with open(os.path.join(copy, "scores.jsonl"), encoding="utf-8") as stream:
-                scores = stream.read()
-            with open(os.path.join(copy, "candidates", "scores.jsonl"), "w", encoding="utf-8") as stream:
-                stream.write(scores)
-            with open(os.path.join(copy, "scores.jsonl"), "w", encoding="utf-8") as stream:
-                stream.write(re.sub(r'"(best_candidate_iou|first_near_iteration)":[^,]*,', "", scores))
-            page = os.path.join(folder, "page.html")
-            self.assertEqual(report(copy, page).returncode, 0)
-            with open(page, encoding="utf-8") as stream:
-                text = stream.read()
-            figure = r'<figure id="clc-fig-11">.*?</figure>'
-            self.assertEqual(re.findall(figure, text, flags=re.S), re.findall(figure, self.text, flags=re.S))
+            write(scores, copy, "candidates", "scores.jsonl")
+            write(re.sub(r'"(best_candidate_iou|first_near_iteration)":[^,]*,', "", scores), copy, "scores.jsonl")
+        self.assertEqual(part(self.made_of_copy(move_candidates), "figure", "clc-fig-11"), part(self.text, "figure", "clc-fig-11"))
 
     def made_of(self, folder, setup, *options):
         """The page that is made of such results, and what its viewer has."""
@@ -503,11 +483,9 @@ class ReportPage(unittest.TestCase):
         write_results(results, setup)
         done = report(results, page, *options)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        with open(page, encoding="utf-8") as stream:
-            text = stream.read()
+        text = read(page)
         self.assertEqual((Page(text).wrong, Page(text).open), ([], []))
-        found = re.search(r'<script type="application/json" id="scene-data">(.*?)</script>', text, flags=re.S)
-        return text, json.loads(found[1])
+        return text, viewer_data(text)
 
     def test_runs_points_and_centre_lines_have_no_overlap(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -529,23 +507,16 @@ class ReportPage(unittest.TestCase):
             self.assertEqual([answer[4] for answer in frame["a"]], [None] * 3)
             seen = next(lap for lap in data["laps"] if (lap["track"], lap["condition"]) == ("one", "car"))
             self.assertEqual(data["frames"][seen["scenes"][0]]["m"], [600, 150])
-            self.assertIn('class="missed"', text)
-            self.assertIn('class="driven"', text)
             self.assertIn("IoU unknown", text)
             for condition in ("paper", "car"):
                 self.assertIn(f'id="calibration-{condition}"', text)
-            bins = re.search(r'<div class="table" id="calibration-bins">.*?</table>', text, flags=re.S)[0]
-            lanes = sum(int(value) for value in re.findall(r'data-value="(\d+)">\d+</td></tr>', bins))
-            with open(os.path.join(folder, "results", "results.jsonl"), encoding="utf-8") as rows:
-                stored = [json.loads(row) for row in rows]
+            lanes = sum(int(value) for value in re.findall(r'data-value="(\d+)">\d+</td></tr>', part(text, "table", "calibration-bins")))
+            stored = lines("results.jsonl", os.path.join(folder, "results"))
             self.assertEqual(lanes, sum(one[0] for row in stored for one in row["calibration"].get("bins", ())))
             self.assertGreater(lanes, 0)
-            said = re.search(r'<div class="table" id="calibration-table">.*?</table>', text, flags=re.S)[0]
-            self.assertEqual(said.count(">99.50<"), 12)  # right where trusted: three methods, conditions and rates
-            by_track = re.search(r'<div class="table" id="by-track">.*?</table>', text, flags=re.S)[0]
-            self.assertEqual(by_track.count("<small>trained</small>"), 2)  # one course in two conditions
-            headline = re.search(r'<div class="table" id="headline">.*?</table>', text, flags=re.S)[0]
-            self.assertEqual(headline.count("*</td>"), 1)  # one method
+            self.assertEqual(part(text, "table", "calibration-table").count(">99.50<"), 12)  # right where trusted: three methods, conditions and rates
+            self.assertEqual(part(text, "table", "by-track").count("<small>trained</small>"), 2)  # one course in two conditions
+            self.assertEqual(part(text, "table", "headline").count("*</td>"), 1)  # one method
             self.assertRegex(text, r'<div class="table" id="outside">.*?<td[^>]*>MIT</td>.*?>3\.25<.*?>0\.04<')
 
     def test_results_of_earlier_versions_still_make_a_page(self):
@@ -603,29 +574,22 @@ class ReportPage(unittest.TestCase):
             self.assertIn("By the number of cones", text)
 
     def test_without_scenes_it_says_so(self):
-        with tempfile.TemporaryDirectory() as folder:
-            copy = os.path.join(folder, "copy")
-            shutil.copytree(RESULTS, copy)
-            os.unlink(os.path.join(copy, "scenes.scenes.jsonl"))
-            shutil.rmtree(os.path.join(copy, "sweep"))
-            shutil.rmtree(os.path.join(copy, "race"))
-            for name in ("optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl",
-                         "anytime.jsonl", "growth.jsonl", "confidence-and-colour.jsonl", "benchmarks.json"):
-                if name != "benchmarks.json" or BENCHMARKED:
-                    os.unlink(os.path.join(copy, name))
-            page = os.path.join(folder, "page.html")
-            self.assertEqual(report(copy, page).returncode, 0)
-            with open(page, encoding="utf-8") as stream:
-                text = stream.read()
-            self.assertIn("the results hold no scenes.scenes.jsonl", text)
-            for complaint in ("there is no sweep over cone-set sizes.", "there is no optimality.jsonl.",
-                              "there is no backends.jsonl.", "there is no formulations.jsonl.",
-                              "there is no anytime.jsonl.", "there is no growth.jsonl.",
-                              "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
-                              "there is no benchmarks.json.", "there is no race/race.json."):
-                self.assertIn(complaint, text)
-            self.assertIn("<code>conelane compare --by-size --out RESULTS/sweep</code>", text)
-            self.assertEqual(Page(text).wrong, [])
+        def strip(copy):
+            for name in ("scenes.scenes.jsonl", "optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl", "anytime.jsonl",
+                         "growth.jsonl", "confidence-and-colour.jsonl") + ("benchmarks.json",) * BENCHMARKED:
+                os.unlink(os.path.join(copy, name))
+            for name in ("sweep", "race"):
+                shutil.rmtree(os.path.join(copy, name))
+        text = self.made_of_copy(strip)
+        self.assertIn("the results hold no scenes.scenes.jsonl", text)
+        for complaint in ("there is no sweep over cone-set sizes.", "there is no optimality.jsonl.",
+                          "there is no backends.jsonl.", "there is no formulations.jsonl.",
+                          "there is no anytime.jsonl.", "there is no growth.jsonl.",
+                          "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
+                          "there is no benchmarks.json.", "there is no race/race.json."):
+            self.assertIn(complaint, text)
+        self.assertIn("<code>conelane compare --by-size --out RESULTS/sweep</code>", text)
+        self.assertEqual(Page(text).wrong, [])
 
 
 if __name__ == "__main__":

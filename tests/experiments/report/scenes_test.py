@@ -25,7 +25,7 @@ def results_of(rows, methods=("clc",), directory="results"):
 
 class Worst(unittest.TestCase):
     def of(self, rows, places):
-        return scenes._worst(results_of(rows), places).get(("clc", "paper"), [])
+        return scenes._worst(scenes._wrong(results_of(rows))["clc", "paper"], places)
 
     def test_only_what_is_not_usable_the_lowest_overlap_first(self):
         rows = [("a", "one", 0.3, 1, 0.1), ("b", "two", 0.3, 0, 0.9), ("c", "three", 0.3, 0, 0.2),
@@ -33,7 +33,7 @@ class Worst(unittest.TestCase):
         places = {scene: (100.0 * i, 0.0) for i, scene in enumerate("abcd")}
         self.assertEqual(self.of(rows, places), ["c", "b", "d"])
         self.assertEqual(self.of(rows[:1], places), [])
-        self.assertEqual(scenes._wrong(results_of(rows)), {("clc", "paper"): 3})
+        self.assertEqual(len(scenes._wrong(results_of(rows))["clc", "paper"]), 3)
 
     def test_ties_go_by_name(self):
         rows = [("b", "one", 0.3, 0, 0.0), ("a", "two", 0.3, 0, 0.0)]

@@ -19,7 +19,7 @@ except ImportError as error:
 
 
 def normal(weights, variance):
-    return course_judge.Density(weights, [(1.0, 0.0, 0.0, variance, 0.0, variance)])
+    return course_judge.Density(weights, [(1.0, (0.0, 0.0), ((variance, 0.0), (0.0, variance)))])
 
 
 def straight_model(variance, early_end=0.01):
@@ -32,7 +32,7 @@ def straight_model(variance, early_end=0.01):
 
 
 LEFT, RIGHT = (1, 2, 3), (11, 12, 13)
-COURSE = {1: (2.0, 2.0), 2: (6.0, 2.0), 3: (10.0, 2.0), 11: (2.0, -2.0), 12: (6.0, -2.0), 13: (10.0, -2.0)}
+COURSE = {1: complex(2.0, 2.0), 2: complex(6.0, 2.0), 3: complex(10.0, 2.0), 11: complex(2.0, -2.0), 12: complex(6.0, -2.0), 13: complex(10.0, -2.0)}
 
 
 class Judge(unittest.TestCase):
@@ -45,7 +45,7 @@ class Judge(unittest.TestCase):
 
     def test_two_cones_at_the_same_distance_from_the_continuation_have_one_half_each(self):
         # Instead of cone 3 there are two, 0.5 m to both sides of its place: which one is false cannot be told.
-        places = {cone: place for cone, place in COURSE.items() if cone != 3} | {3: (10.0, 2.5), 99: (10.0, 1.5)}
+        places = {cone: place for cone, place in COURSE.items() if cone != 3} | {3: 10.0 + 2.5j, 99: 10.0 + 1.5j}
         lanes = self.probabilities(places, 1e-3)
         self.assertAlmostEqual(lanes[LEFT, RIGHT], lanes[(1, 2, 99), RIGHT], places=9)
         self.assertGreater(lanes[LEFT, RIGHT] + lanes[(1, 2, 99), RIGHT], 0.98)
@@ -63,14 +63,14 @@ class Judge(unittest.TestCase):
     def test_the_answer_may_have_one_wrong_cone(self):
         # Two lanes differ by one cone: either answer is accurate for both. A third one differs by two from each.
         lanes = [((LEFT, RIGHT), 0.3), (((1, 2), RIGHT), 0.3), (((1, 98, 99), RIGHT), 0.4)]
-        places = COURSE | {98: (6.0, 2.5), 99: (10.0, 2.5)}
+        places = COURSE | {98: 6.0 + 2.5j, 99: 10.0 + 2.5j}
         answer, probability = course_judge.judged(course_judge.shortened(lanes, set(places), places))
         self.assertIn(answer, [(LEFT, RIGHT), ((1, 2), RIGHT)])
         self.assertAlmostEqual(probability, 0.6)
 
     def test_a_lane_is_cut_as_by_the_detector(self):
         self.assertEqual(course_judge.cut((LEFT, RIGHT), {1, 3, 11, 12}, COURSE), ((1,), (11, 12)))
-        places = COURSE | {3: (16.0, 2.0)}  # farther than 6.5 m from the last cone on the right
+        places = COURSE | {3: 16.0 + 2.0j}  # farther than 6.5 m from the last cone on the right
         self.assertEqual(course_judge.cut((LEFT, (11, 12)), set(places), places), ((1, 2), (11, 12)))
 
     def test_where_an_answer_differs(self):
@@ -80,7 +80,7 @@ class Judge(unittest.TestCase):
         self.assertEqual(course_judge.loss(((99, 2, 3), (11, 12, 13)), truth), "start")
 
     def test_cones_beside_the_lane_count_by_their_own_density(self):
-        view = course_judge.View(COURSE | {98: (8.0, 4.0), 99: (8.0, 8.0)}, 12.0, 0.01)
+        view = course_judge.View(COURSE | {98: 8.0 + 4.0j, 99: 8.0 + 8.0j}, 12.0, 0.01)
         number, area_m2 = course_judge.beside((LEFT, RIGHT), view)
         self.assertEqual(number, 1)  # cone 98, 2 m from the left boundary
         self.assertAlmostEqual(area_m2, 2 * 8.0 * 2 * course_judge.BESIDE_M)
@@ -102,14 +102,12 @@ class Fit(unittest.TestCase):
     def test_a_regression_and_its_spread_are_found(self):
         source = random.Random(3)
         features = [(1.0, source.uniform(3, 5)) for _ in range(4000)]
-        targets = [(f[1] + source.gauss(0, 0.3), 0.5 + source.gauss(0, 0.1)) for f in features]
+        targets = [complex(f[1] + source.gauss(0, 0.3), 0.5 + source.gauss(0, 0.1)) for f in features]
         density = course_judge.fitted(features, targets)
-        x, y = density.mean((1.0, 4.0))
-        self.assertAlmostEqual(x, 4.0, delta=0.03)
-        self.assertAlmostEqual(y, 0.5, delta=0.03)
+        self.assertAlmostEqual(density.mean((1.0, 4.0)), 4.0 + 0.5j, delta=0.03)
         variance = [0.3**2 + course_judge.SMOOTHING_M2, 0.1**2 + course_judge.SMOOTHING_M2]
         at_mean = math.log((1 - course_judge.STRAY[0]) / (2 * math.pi * math.sqrt(variance[0] * variance[1])))
-        self.assertAlmostEqual(density.log(0.0, 0.0), at_mean, delta=0.1)
+        self.assertAlmostEqual(density.log(0.0), at_mean, delta=0.1)
 
 
 class Calibration(unittest.TestCase):
@@ -121,9 +119,8 @@ class Calibration(unittest.TestCase):
             context = course_judge.Context(lane, side, ended, view.places)
             density = model.densities[context.kind]
             mean = density.mean(context.features)
-            x, y = density.draw(source)
-            place = context.place(mean[0] + x, mean[1] + y)
-            if lane[0] and lane[1] and (source.random() < model.early_end or not view.contains(*place)):
+            place = context.place(mean + density.draw(source))
+            if lane[0] and lane[1] and (source.random() < model.early_end or not view.contains(place)):
                 ended[side] = True
             else:
                 cone += 1
@@ -132,8 +129,8 @@ class Calibration(unittest.TestCase):
         expected_count = clutter * 0.5 * math.pi * view.radius_m**2
         number = sum(source.random() < expected_count / 1000 for _ in range(1000))
         while number:
-            place = source.uniform(0, view.radius_m), source.uniform(-view.radius_m, view.radius_m)
-            if view.contains(*place):
+            place = complex(source.uniform(0, view.radius_m), source.uniform(-view.radius_m, view.radius_m))
+            if view.contains(place):
                 cone += 1
                 view.places[cone] = place
                 number -= 1

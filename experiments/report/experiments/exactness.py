@@ -1,0 +1,291 @@
+"""What exact search gives, and what it costs."""
+
+import re
+
+import numpy as np
+
+from .. import measures
+from ..charts import by_rate, chart, drawn, group, series
+from ..experiment import Experiment
+from ..load import SUCCESSES, Missing
+from ..records import NUMBER, TEXT, WHOLE, YES_OR_NO, InputError, read_json
+from ..summaries import median, percent_label, quantile
+from ..tables import column, count, fixed, milliseconds, percent, table, text
+from ..theme import percent_axis
+
+
+class Compared:
+    """Scenes of optimality.jsonl with a proven optimum and a feasible candidate."""
+
+    def __init__(self, rows):
+        self.rows = [row for row in rows if "gap" in row]
+        self.track = np.array([row["track"] for row in self.rows], dtype=object)
+        self.equal = np.array([float(row["equal"]) for row in self.rows])
+        self.gaps = np.array([row["gap"] for row in self.rows])
+
+    def __len__(self):
+        return len(self.rows)
+
+    def success(self, name):
+        return np.array([float(name in row and row[name]["category"] in SUCCESSES) for row in self.rows])
+
+    def overlap(self, name):
+        return np.array([row[name]["iou"] if name in row else 0.0 for row in self.rows])
+
+
+_LANES = {"optimum": "RLD's optimum", "candidate": "cheapest candidate", "choice": "CLC's own choice"}
+
+
+def read_optimality(results):
+    """The stored scenes under RLD's objective (29); other objectives are left out."""
+    lane = {"category": TEXT, "iou": NUMBER}
+    kinds = {"scene": TEXT, "track": TEXT, "false_positive_rate": NUMBER, "method": TEXT, "status": TEXT, "candidates": WHOLE,
+             "feasible_candidates": WHOLE}
+
+    def of_row(row):
+        return kinds | ({"gap": NUMBER, "equal": YES_OR_NO, "optimum": (dict,), "candidate": (dict,)} if "gap" in row else {}) | {
+            f"{name}?": lane for name in _LANES}
+    return results.stored("optimality.jsonl", of_row, lambda row: row.get("costs", "default") == "default")
+
+
+def _of_rates(rows):
+    """(rate, rows, those compared) by rate."""
+    for rate in sorted({row["false_positive_rate"] for row in rows}):
+        of_rate = [row for row in rows if row["false_positive_rate"] == rate]
+        yield rate, of_rate, Compared(of_rate)
+
+
+def _optimality_gaps(rows):
+    most = max(1.0, 100 * max(Compared(rows).gaps))
+    curves = []
+    for rate, _, both in _of_rates(rows):
+        places, counts = np.unique(100 * both.gaps, return_counts=True)
+        curves.append((f"{percent_label(rate)} % false positives",
+                       [*zip(places, 100 * np.cumsum(counts) / len(both)), (most, 100)] if len(both) else []))
+    figure, axes = chart(series(curves, "steps"), "gap to the proven optimum [%]", "scenes within it [%]", scale=percent_axis)
+    axes.set_xscale("symlog", linthresh=0.1)
+    axes.set_xlim(left=0)
+    ticks = [tick for tick in (0, 0.1, 1, 10, 100, 1000) if tick <= most]
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    return figure, axes
+
+
+@Experiment
+def optimality(results, published):
+    """The optimum against CLC's best candidate
+    Claim: How far from optimal is the graph search under the objective that RLD minimises, and does the optimum drive
+    better?
+    Protocol: every candidate that CLC enumerates within its iteration limit gets its cost under RLD's objective (29);
+    candidates that RLD's constraints forbid are counted separately. The cheapest is compared with the optimum that
+    `path-pair` proves on the same cones. Gap: difference divided by the larger of 1 and the optimum's size. Equal: within 1e-6.
+    Optimum and cheapest candidate pass the independent checker; a candidate below a proven optimum would have stopped the run.
+    Source: this project; neither paper compares them.
+    Command: conelane study optimality --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/optimality.jsonl"""
+    rows = read_optimality(results)
+    if not len(Compared(rows)):
+        raise Missing("no scene has a proven optimum and a feasible candidate.")
+    where = " and ".join("all visible cones" if n is None else f"the {n} nearest cones" for n in sorted(
+        {row.get("nearest") for row in rows}, key=lambda n: n or 0))
+    compared = [both for _, _, both in _of_rates(Compared(rows).rows)]
+    rates = [rate for rate, _, _ in _of_rates(Compared(rows).rows)]
+    driving = by_rate(series([(words, [(100 * rate, 100 * both.success(name).mean()) for rate, both in zip(rates, compared)])
+                              for name, words in _LANES.items()]), "success [%]", rates, scale=percent_axis)
+    figures = [drawn("optimality-gaps", "A curve that starts high: the cheapest candidate is often the optimum. Candidates of "
+                     f"{rows[0]['method']} on {where}.", _optimality_gaps(rows), "Gap"),
+               drawn("optimality-success", "Equal curves: the optimum drives no better. The scenes with "
+                     "a proven optimum and a feasible candidate, as in the table.", driving, "Does the optimum drive better?")]
+    lines = [{"rate": rate, "rows": of_rate, "both": both if len(both) else None,
+              "proven": [row for row in of_rate if row["status"] == "optimal"]} for rate, of_rate, both in _of_rates(rows)]
+
+    def of_both(title, show, value, **options):
+        return column(title, show, lambda line: value(line["both"]) if line["both"] else None, **options)
+
+    def feasible(line):
+        candidates = sum(row["candidates"] for row in line["rows"])
+        return sum(row["feasible_candidates"] for row in line["rows"]) / candidates if candidates else None
+    return group(figures) + table("optimality", [
+        column("false positives %", percent, lambda line: line["rate"]), column("scenes", count, lambda line: len(line["rows"])),
+        column("proven %", percent, lambda line: len(line["proven"]) / len(line["rows"])), column("candidates feasible %", percent, feasible),
+        column("proven, none feasible %", percent,
+               lambda line: np.mean([row["feasible_candidates"] == 0 for row in line["proven"]]) if line["proven"] else None),
+        of_both("compared", count, len),
+        of_both("equal %", percent, lambda both: both.equal.mean(),
+                interval=lambda line: line["both"] and measures.mean_interval(line["both"].equal, line["both"].track)),
+        of_both("median gap %", percent, lambda both: median(both.gaps), digits=2),
+        of_both("p95 gap %", percent, lambda both: quantile(both.gaps, 0.95), digits=2),
+        *(of_both(f"success {name} %", percent, lambda both, name=name: both.success(name).mean()) for name in ("optimum", "candidate")),
+        *(of_both(f"IoU {name} %", percent, lambda both, name=name: both.overlap(name).mean()) for name in ("optimum", "candidate"))], lines,
+        note="Compared: scenes with a proven optimum and a feasible candidate. Small: 95 % interval, tracks "
+             f"resampled.{results.origin(rows[0])}")
+
+
+_CLOSE = 0.01
+
+
+def _is_close(row):
+    if row["proven"]:
+        return True
+    if "objective" not in row or "best_known" not in row:
+        return False
+    return row["objective"] - row["best_known"] <= _CLOSE * max(1.0, abs(row["best_known"]))
+
+
+def _grouped(rows, key):
+    """{key: rows}, in order of the keys."""
+    found = {}
+    for row in rows:
+        found.setdefault(key(row), []).append(row)
+    return dict(sorted(found.items()))
+
+
+def _curves(groups, *curves, **options):
+    """Curves of (label, value of the rows of a group) over the keys of the groups."""
+    return chart(series([(label, [(place, value(rows)) for place, rows in groups.items()]) for label, value in curves]), **options)
+
+
+def _of_values(key, statistic):
+    return lambda rows: statistic([row[key] for row in rows])
+
+
+@Experiment
+def anytime(results, published):
+    """What the exact search knows at its time limit
+    Claim: If the time is too short for a proof, there are a lane graph and a proven gap; both improve with time.
+    Protocol: `path-pair` on all cones of each scene, solved again under each limit, one thread. Gap: from the bound to the
+    best lane graph known under any limit, divided by the larger of 1 and its cost's size; 0 if the optimum is proven.
+    Close: a lane graph whose cost is within 1 % of that one's.
+    Source: this project.
+    Command: conelane study anytime --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/anytime.jsonl"""
+    rows = results.stored("anytime.jsonl", {"scene": TEXT, "limit_ms": NUMBER, "proven": YES_OR_NO})
+    origin, by_limit = results.origin(rows[0]).strip(), _grouped(rows, lambda row: row["limit_ms"])
+    first = min(by_limit)
+    shares = _curves(by_limit, ("proven", lambda rows: 100.0 * np.mean([row["proven"] for row in rows])),
+                     ("lane graph within 1 %", lambda rows: 100.0 * np.mean(list(map(_is_close, rows)))),
+                     xlabel="limit [ms]", ylabel="scenes [%]", log="x", scale=percent_axis)
+    # Scenes that are not solved within the first limit: the same scenes at every limit.
+    hard = {row["scene"] for row in by_limit[first] if not row["proven"]}
+
+    def within(share):
+        def gap(rows):
+            found = [100.0 * row.get("gap", np.inf) for row in rows if row["scene"] in hard]
+            return quantile(found, share / 100) if found else 0.0
+        return f"{share} % of them at most", gap
+    gaps = _curves(by_limit, *map(within, (50, 75, 90)), xlabel="limit [ms]", ylabel="proven gap [%]", log="x", ylim=(0.0, None))
+    return group([
+        drawn("anytime-shares", "Where a curve is level, more time proves nothing more. Share of "
+              f"{len(by_limit[first])} scenes, by the limit. {origin}".strip(), shares, "Proven, and nearly best"),
+        drawn("anytime-gap", "The faster a curve falls, the better the first answers are. For the "
+              f"{len(hard)} scenes that are not solved within {first:g} ms. {origin}".strip(), gaps, "Gap against time")])
+
+
+@Experiment
+def growth(results, published):
+    """How the cost of the exact search grows
+    Claim: Time grows mildly with the cones and steeply with their density.
+    Protocol: `path-pair` on the nearest cones of each scene at each size that it exceeds, and on all of them; processor
+    time of its thread, from the scene in memory to the answer in memory. A search that reached its limit counts with the
+    time that it took. Density: mean number of other cones within 5.5 m of a cone.
+    Source: this project.
+    Command: conelane study growth --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/growth.jsonl"""
+    rows = results.stored("growth.jsonl", {"cones": WHOLE, "all_visible": YES_OR_NO, "density": NUMBER, "edges": WHOLE, "nodes": WHOLE,
+                                           "cpu_ms": NUMBER})
+    figures = []
+    for name, title, xlabel, whole, key, caption in (
+            ("growth-size", "By the number of cones", "nearest cones", False, lambda row: row["cones"],
+             "A straight line on this scale: each cone more multiplies the time. Scenes that have more cones."),
+            ("growth-density", "By density", "others within 5.5 m of a cone", True, lambda row: int(row["density"]) + 0.5,
+             "Scenes at the right end, with dense cones, take most time. All visible cones.")):
+        groups = _grouped((row for row in rows if row["all_visible"] == whole), key)
+        if groups:
+            figure = _curves(groups, ("median, ms", _of_values("cpu_ms", median)),
+                             ("p95, ms", _of_values("cpu_ms", lambda values: quantile(values, 0.95))), ("nodes, mean", _of_values("nodes", np.mean)),
+                             xlabel=xlabel, ylabel="", log="y")
+            figures.append(drawn(name, f"{caption} {results.origin(rows[0]).strip()}".strip(), figure, title))
+    return group(figures)
+
+
+def study_table(name, file, kinds, columns):
+    """A table of what a study stored; its columns are of keys of the rows."""
+    def show(results, published):
+        rows = results.stored(file, kinds)
+        return table(name, columns, rows, note=results.origin(rows[0]).strip())
+    return show
+
+
+_FEW_KINDS = {"cones": WHOLE, "solver": TEXT, "scenes": WHOLE, "optimal": WHOLE, "median_ms": NUMBER, "p95_ms": NUMBER}
+
+formulations = Experiment(study_table(
+    "formulations", "formulations.jsonl", {"cones": WHOLE, "formulation": TEXT, "infeasible": WHOLE, "columns": NUMBER, "rows": NUMBER,
+                                           "mean_nodes": NUMBER, "median_build_ms": NUMBER} | _FEW_KINDS,
+    [column("n", count, "cones"), column("formulation", text, "formulation"), column("solver", text, "solver"),
+     column("scenes", count, "scenes"), column("proven %", percent, lambda row: (row["optimal"] + row["infeasible"]) / row["scenes"]),
+     column("columns", fixed, "columns", digits=0), column("rows", fixed, "rows", digits=0), column("LP gap, median %", percent, "median_gap"),
+     column("LP gap, mean %", percent, "mean_gap"), column("nodes", fixed, "mean_nodes"), column("build ms", milliseconds, "median_build_ms"),
+     column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms")]), about="""Formulations
+    Claim: Both formulations have the same optimum; the tight one has the stronger relaxation and is solved faster.
+    Protocol: the n nearest cones of each scene with at least n cones; the tight formulation by `cbc`, the printed one by
+    `cbc-main`, each the faster of the two on it; one thread, building included. LP gap: (optimum - relaxation) divided
+    by the larger of 1 and the optimum's size. A difference in optima above 1e-6 would have stopped the run.
+    Source: this project; the printed rows are those of the RLD paper, III.
+    Command: conelane study formulations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/formulations.jsonl""")
+
+relaxations = Experiment(study_table(
+    "relaxations", "relaxations.jsonl", _FEW_KINDS | {"feasible": WHOLE, "answered": WHOLE, "accurate": NUMBER, "worst_ms": NUMBER},
+    [column("n", count, "cones"), column("solver", text, "solver"),
+     *(column(key, count, key) for key in ("scenes", "feasible", "answered", "optimal")),
+     column("mean gap %", percent, "mean_gap", digits=2), column("worst gap %", percent, "worst_gap"), column("accurate %", percent, "accurate"),
+     column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms"), column("max ms", milliseconds, "worst_ms")]),
+    about="""Relaxations
+    Claim: Does relaxing the binary constraints decrease latency, and how much accuracy does it cost?
+    Protocol: every solver that proves nothing, and `path-pair`, which gives the optimum, on the n nearest cones; one
+    thread, the problem's making included. Gap: (objective - least cost) divided by the larger of 1 and the least cost's
+    size, over the answered scenes. Accurate: the RLD paper's four checks, a solve without an answer counts as inaccurate.
+    Source: this project; the question is the RLD paper's own, V.
+    Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl""")
+
+confidence_and_colour = Experiment(study_table(
+    "confidence-and-colour", "confidence-and-colour.jsonl",
+    {"known": TEXT, "false_positive_rate": NUMBER, "scenes": WHOLE, "accurate": NUMBER, "success": NUMBER, "weights?": (list,)},
+    [column("known", text, "known"), column("false positives %", percent, "false_positive_rate"), column("scenes", count, "scenes"),
+     column("accurate %", percent, "accurate"), column("success %", percent, "success"),
+     column("weight by fold", text, lambda row: ", ".join(f"{weight:g}" for weight in row.get("weights", ())) or None)]),
+    about="""Confidence and colour
+    Claim: How much more accurate is RLD with detection confidences, or with cone colours of which some are wrong?
+    Protocol: scenes and folds of a tuning whose parameters were fitted to geometry alone; the same scenes with simulated
+    confidences or colours. Each fold is measured on its held-out tracks; the weight of the additional data (w_b with
+    confidences, w_color with colours) is chosen on the other tracks. Accurate: the RLD paper's four checks
+    on the cone set; success: no lane that leaves the track within 20 m.
+    Source: this project; the question is the RLD paper's own, V.
+    Command: conelane study confidence-and-colour --record detectors/parameters/context.record.json --tracks TRACK...
+    --out RESULTS/confidence-and-colour.jsonl""")
+
+
+_BENCHMARKS = "benchmarks.json"
+_STAGES = ("problem", "build", "update")
+_MICROSECONDS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}
+
+
+@Experiment
+def update_or_rebuild(results, published):
+    """Update against rebuild
+    Claim: A program built at start and updated before each solve, as the RLD paper does it, saves building it.
+    Protocol: Google Benchmark; the scenes take turns. Problem: the numbers of a scene. Build: a new program from
+    them. Update: the same program with the new numbers.
+    Source: this project; the RLD paper, III, builds its model at program start.
+    Command: conelane_benchmarks --benchmark_filter=problem/|build/|update/ --benchmark_out_format=json
+    --benchmark_out=RESULTS/benchmarks.json"""
+    path, times = results.path_of(_BENCHMARKS), {}
+    try:
+        for run in read_json(path)["benchmarks"]:
+            found = re.fullmatch(rf"({'|'.join(_STAGES)})/(\w+)/(\d+)", run["name"])
+            if found and not run.get("error_occurred"):
+                times.setdefault((int(found[3]), found[2]), {})[found[1]] = run["cpu_time"] * _MICROSECONDS[run["time_unit"]]
+    except (KeyError, TypeError) as error:
+        raise InputError(f"{path}: no output of Google Benchmark ({error})") from None
+    rows = [{"n": size, "formulation": formulation} | stages for (size, formulation), stages in sorted(times.items()) if len(stages) == len(_STAGES)]
+    if not rows:
+        raise Missing(f"{_BENCHMARKS} has no stage of model building.")
+    return table("update-or-rebuild", [
+        column("n", count, "n"), column("formulation", text, "formulation"), *(column(f"{stage} µs", fixed, stage) for stage in _STAGES),
+        column("build / update", fixed, lambda row: row["build"] / row["update"])], rows)

@@ -1,0 +1,232 @@
+"""What `conelane study backends` measured of solvers."""
+
+import numpy as np
+
+from .. import measures
+from ..charts import chart, drawn, group, series
+from ..experiment import Experiment
+from ..load import Missing
+from ..records import NUMBER, TEXT, WHOLE
+from ..summaries import median, quantile
+from ..tables import Cell, Column, column, count, fixed, milliseconds, percent, short, table, text
+from ..theme import series_style
+from .speed import profile_figure, ratio
+
+FILE = "backends.jsonl"
+AGREEMENT = 1e-6
+_WARM = " warm"
+_SOLVE = {"scene": TEXT, "track": TEXT, "nearest": WHOLE, "backend": TEXT, "status": TEXT, "nodes": WHOLE, "latency_ms": NUMBER}
+
+
+class Solves:
+    """The solves of one backend at one cone-set size, columns as arrays of one length."""
+
+    def __init__(self, nearest, backend, rows):
+        self.nearest, self.backend, self.label = nearest, backend, backend
+        for key in ("scene", "track", "status"):
+            setattr(self, key, np.array([row[key] for row in rows], dtype=object))
+        self.objective = np.array([row.get("objective", np.nan) for row in rows], dtype=float)
+        self.nodes = np.array([row["nodes"] for row in rows], dtype=float)
+        self.latency = np.array([row["latency_ms"] for row in rows], dtype=float)
+        self.is_warm = backend.endswith(_WARM)
+
+    @property
+    def is_decided(self):
+        """Optimum or infeasibility proven."""
+        return np.isin(self.status, ("optimal", "infeasible"))
+
+
+def _read(results):
+    """By size and backend in the order of the file, and where they come from, as a sentence."""
+    # Other rows are measures, or the same scene in another order.
+    stored = results.stored(FILE, lambda row: _SOLVE | ({"objective": NUMBER} if row.get("status") == "optimal" else {}),
+                            lambda row: "row" not in row and not row.get("permutation", 0))
+    rows = {}
+    for row in stored:
+        rows.setdefault((row["nearest"], row["backend"]), []).append(row)
+    return [Solves(*key, of_backend) for key, of_backend in rows.items()], results.origin(stored[0])
+
+
+def _size_name(nearest):
+    """`nearest` of a row: 0 stands for all visible cones."""
+    return str(nearest) if nearest else "all"
+
+
+def _size(row, *more):
+    """The first cell of a row; all visible cones are the last size."""
+    return Cell(" ".join((_size_name(row["nearest"]), *more)).strip(), row["nearest"] or 10**6)
+
+
+def disagreements(solves):
+    """Scenes of one size in which two backends prove different optima, or one proves that there is none where
+    another proves an optimum; and the number of scenes that two of them decided."""
+    found = {}
+    for one in solves:
+        for scene, status, objective in zip(one.scene, one.status, one.objective):
+            if status in ("optimal", "infeasible"):
+                found.setdefault(scene, []).append(objective if status == "optimal" else np.inf)
+    shared = [values for values in found.values() if len(values) > 1]
+    return sum(not (max(values) == min(values) or max(values) - min(values) <= AGREEMENT) for values in shared), len(
+        shared)
+
+
+@Experiment
+def exact_backends(results, published):
+    """Exact backends
+    Claim: All exact solvers have the same optimum; they differ in time.
+    Protocol: every backend on the same cone sets of the same scenes, one thread, pinned; the time is from the scene in
+    memory to the lane graph in memory, the program's building included. Every lane graph passes the independent checker
+    or counts as an error. Time-outs count in every figure with the time that they took.
+    Source: this project; the RLD paper runs Mosek on the printed formulation.
+    Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
+    Command: conelane study backends --sizes 12,20,30,60,all --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl"""
+    solves, origin = _read(results)
+    cold = [one for one in solves if not one.is_warm]
+    figures, agreement = [], []
+    for size in dict.fromkeys(one.nearest for one in cold):
+        of_size = [one for one in cold if one.nearest == size]
+        agreement.append("n = {}: {} of {} scenes".format(_size_name(size), *disagreements(of_size)))
+        figure, scenes = profile_figure(of_size, lambda i, _: series_style(i), lambda one: one.is_decided)
+        if len(of_size) > 1 and figure:
+            figures.append(drawn(f"backends-profile-{_size_name(size)}", "The upper left curve is the fastest backend on most scenes. Share of "
+                                 f"{scenes} scenes proven (optimum or no lane) within a multiple of the fastest backend's time.", figure,
+                                 f"n = {_size_name(size)}"))
+
+    def time(title, of, **options):
+        return column(title, milliseconds, lambda one: of(one.latency), **options)
+    return group(figures) + table("backends", [
+        Column("n", lambda one: _size({"nearest": one.nearest})), column("backend", text, lambda one: one.backend),
+        column("scenes", count, lambda one: len(one.scene)), column("proven %", percent, lambda one: one.is_decided.mean()),
+        column("errors", count, lambda one: int(np.sum(one.status == "error"))),
+        time("median ms", median, interval=lambda one: measures.median_interval(one.latency, one.track)), time("mean ms", np.mean),
+        time("standard deviation ms", lambda latency: latency.std(ddof=1) if len(latency) > 1 else 0.0),
+        time("geometric mean ms", measures.shifted_geometric_mean), time("p95 ms", lambda latency: quantile(latency, 0.95)),
+        time("p99 ms", lambda latency: quantile(latency, 0.99)), time("max ms", max),
+        column("nodes", fixed, lambda one: one.nodes.mean())], cold,
+        note=f"Backends prove different optima at {'; '.join(agreement)}. Small: 95 % "
+             f"interval, tracks resampled. Geometric mean: shifted by 1 ms.{origin}")
+
+
+@Experiment
+def warm_start(results, published):
+    """Warm start along a lap
+    Claim: What does the last scene's lane graph save an exact solver?
+    Protocol: each backend twice on the same scenes in travel order, without and with the start. Ratio: geometric mean of
+    the time with it divided by the time without, scene by scene; below 1, the start saves time. False positives are drawn at
+    every pose.
+    Source: this project; the RLD paper builds its model once and updates it.
+    Command: conelane study backends --warm-start --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl"""
+    try:
+        solves, origin = _read(results)
+    except Missing:
+        solves, origin = [], ""
+    rows = []
+    for warm in (one for one in solves if one.is_warm):
+        start = next((one for one in solves if (one.nearest, one.backend + _WARM) == (warm.nearest, warm.backend)), None)
+        found = measures.latency_ratio(warm, start) if start else None
+        if found:
+            rows.append({"warm": warm, "cold": start, "ratio": found})
+    if not rows:
+        raise Missing("no backend was run with and without a start.")
+    return table("warm-start", [
+        column("n", count, lambda row: row["warm"].nearest), column("backend", text, lambda row: row["cold"].backend),
+        ratio("time ratio", lambda row: row["ratio"]), column("nodes without", fixed, lambda row: row["cold"].nodes.mean()),
+        column("nodes with", fixed, lambda row: row["warm"].nodes.mean()), column("scenes", count, lambda row: row["ratio"][2])],
+        rows, note=f"Small: 95 % interval, tracks resampled.{origin}")
+
+
+_KINDS = {"summary": {"backend": TEXT, "profile": (list,)} | dict.fromkeys(
+              ("nearest", "runs", "solved", "errors", "geometric_ms", "par2_ms", "par10_ms", "common", "won"), NUMBER),
+          "block": {"nearest": WHOLE, "backend": TEXT, "version": TEXT, "reference_ms": NUMBER},
+          "pair": {"nearest": WHOLE, "first": TEXT, "second": TEXT} | dict.fromkeys(("ratio", "scenes", "p_value", "corrected_p_value"), NUMBER),
+          "selection": {"nearest": WHOLE, "single_best": TEXT, "single_par10_ms": NUMBER, "virtual_par10_ms": NUMBER},
+          "gap": {"nearest": WHOLE, "backend": TEXT, "time_ms": NUMBER, "mean_primal_gap": NUMBER, "mean_dual_gap": NUMBER}}
+
+
+def _of_kind(results, kind):
+    """The rows of one kind that the study worked out."""
+    try:
+        return results.stored(FILE, _KINDS[kind], lambda row: row.get("row") == kind)
+    except Missing:
+        return []
+
+
+_GROUP = Column("n", lambda row: _size(row, row.get("condition", "")))
+
+
+def _steps(curves, xlabel, ylabel):
+    return chart(series(curves, "steps"), xlabel, ylabel, log="x", ylim=(-2, 103))
+
+
+def _profiles(summaries):
+    for size in dict.fromkeys(row["nearest"] for row in summaries):
+        curves = [(row["backend"], [(10.0 ** (k / 25), 100.0 * share) for k, share in enumerate(row["profile"])])  # ratios from 1 to 1000
+                  for row in summaries if row["nearest"] == size and "condition" not in row]
+        yield drawn(f"solver-profile-{_size_name(size)}", "Performance profile over all runs, permutations included.",
+                    _steps(curves, "time / fastest time on the same run", "runs solved [%]"), f"n = {_size_name(size)}")
+
+
+_GAPS = {"primal": "The faster a curve falls, the sooner a good lane graph is found. Solved again with each limit.",
+         "dual": "The faster a curve falls, the sooner the bound is close to the optimum. Solved again with each limit."}
+
+
+def _gaps(gaps):
+    for size in dict.fromkeys(row["nearest"] for row in gaps):
+        of_size = [row for row in gaps if row["nearest"] == size]
+        for side, says in _GAPS.items():
+            curves = [(backend, [(row["time_ms"], 100.0 * row[f"mean_{side}_gap"]) for row in of_size if row["backend"] == backend])
+                      for backend in dict.fromkeys(row["backend"] for row in of_size)]
+            yield drawn(f"solver-{side}-gap-{_size_name(size)}", says, _steps(curves, "time [ms]", f"mean {side} gap [%]"),
+                        f"{side.capitalize()} gap over time, n = {_size_name(size)}")
+
+
+def _spread_of_reference(blocks):
+    reference = [block["reference_ms"] for block in blocks]
+    if len(reference) < 2 or not np.mean(reference) > 0.0:
+        return ""
+    mean = np.mean(reference)
+    return (f"A reference problem between blocks took {mean:.3f} ms in the mean, coefficient of variation "
+            f"{100.0 * np.std(reference, ddof=1) / mean:.1f} %: times that differ by less say nothing. ")
+
+
+@Experiment
+def solver_measures(results, published):
+    """Measures of solvers
+    Claim: Which solver is fastest overall, how steady is it, and what is gained by choosing a solver for each scene?
+    Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program. Solved: proven
+    within the limit, accepted by the checker, and refuted by no other backend. Geometric mean shifted by 1 ms, failures at the
+    limit. PAR 1, PAR 2 and PAR 10: mean time, failures at 1, 2 and 10 times the limit. By all: over the runs that every backend
+    solved. Variation: standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the
+    gap to the best lane graph known, over time. Memory: growth of the process; for a program from outside, all its
+    memory. Pairs: Wilcoxon's signed-rank test on a scene's geometric mean times, corrected by Holm. Definitions and sources:
+    docs/benchmark-measures.md.
+    Source: this project.
+    Command: conelane study backends --sizes 12,20,30,60,all --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out
+    RESULTS/backends.jsonl"""
+    summaries, blocks, pairs, selections, gaps = (_of_kind(results, kind) for kind in _KINDS)
+    if not summaries:
+        raise Missing(f"there is no {FILE} with measures.")
+    peak = {(block["nearest"], block["backend"]): block["peak_bytes"] / 2**20 for block in blocks if "peak_bytes" in block}
+    versions = dict.fromkeys(f"{block['backend']}: {block['version'] or 'version unknown'}" for block in blocks)
+    parts = group([*_profiles(summaries), *_gaps(gaps)]) + table(
+        "solver-measures", [
+            _GROUP, column("backend", text, "backend"), column("runs", count, "runs"),
+            column("solved %", percent, lambda row: row["solved"] / row["runs"]), column("errors", count, "errors"),
+            column("geometric mean ms", milliseconds, "geometric_ms"), column("PAR 1 ms", milliseconds, "par1_ms"),
+            column("PAR 2 ms", milliseconds, "par2_ms"), column("PAR 10 ms", milliseconds, "par10_ms"),
+            column("solved by all", count, "common"), column("geometric mean ms, by all", milliseconds, "common_geometric_ms"),
+            column("own time, median ms", milliseconds, "median_engine_ms"), column("variation %", percent, "variability"),
+            column("max / min", fixed, "spread", digits=2), column("primal integral ms", milliseconds, "primal_integral_ms"),
+            column("dual integral ms", milliseconds, "dual_integral_ms"), column("first", count, "won"),
+            column("peak MiB", fixed, lambda row: peak.get((row["nearest"], row["backend"])))], summaries,
+        note=f"{_spread_of_reference(blocks)}{'; '.join(versions)}.")
+    if pairs:
+        parts += table("solver-pairs", [
+            _GROUP, column("first", text, "first"), column("second", text, "second"), column("time ratio", short, "ratio"),
+            column("scenes that differ", count, "scenes"), column("p", short, "p_value", digits=2),
+            column("p, Holm", short, "corrected_p_value", digits=2)], pairs, caption="Pairs")
+    return parts + table("solver-selection", [
+        _GROUP, column("single best", text, "single_best"), column("PAR 10 ms", milliseconds, "single_par10_ms"),
+        column("virtual best PAR 10 ms", milliseconds, "virtual_par10_ms"),
+        column("ratio", fixed, lambda row: row["single_par10_ms"] / max(row["virtual_par10_ms"], 1e-9), digits=2)],
+        selections, caption="Single best and virtual best solver")
