@@ -4,7 +4,7 @@
 # `conelane_require_modules(NAME MODULES...)`: pkg-config modules as target PkgConfig::NAME.
 macro(conelane_require_modules name)
     find_package(PkgConfig REQUIRED)
-    pkg_check_modules(${name} REQUIRED QUIET IMPORTED_TARGET ${ARGN})
+    pkg_check_modules(${name} REQUIRED QUIET IMPORTED_TARGET GLOBAL ${ARGN})
 endmacro()
 
 # `conelane_require_library(NAME HEADER)`: a library without package or pkg-config file, as target conelane_external_NAME.

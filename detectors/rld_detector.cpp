@@ -72,10 +72,10 @@ class RldDetector : public LaneDetector {
     LaneAnswer solve(const Scene& seen, const RldParameters& parameters, double time_limit_ms) {
         std::optional<LaneGraph> start;
         if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, seen);
-        const RldReport report =
-            solve_valid_scene(*solver_, seen, parameters, {time_limit_ms, options_.absolute_gap},
-                              start ? &*start : nullptr)
-                .report;
+        const RldReport report = solve_valid_scene(*solver_, seen, parameters,
+                                                   {.limits = {time_limit_ms, options_.absolute_gap},
+                                                    .start = start ? &*start : nullptr})
+                                     .report;
         if (options_.warm_start && report.lane_graph) previous_ = Solution{seen, *report.lane_graph};
         LaneAnswer answer;
         // A backend that fails keeps a feasible start: a lane without a statement about its optimality.

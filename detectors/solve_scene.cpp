@@ -14,17 +14,17 @@ namespace {
 using MakeProblem = LimitedProblem (*)(const Scene&, const RldParameters&, EdgeExtent, const Deadline&);
 
 SolvedScene solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                  const SolveLimits& limits, const LaneGraph* start, MakeProblem make_problem_of) {
+                  SolveArguments arguments, MakeProblem make_problem_of) {
     const Stopwatch watch;
-    const Deadline deadline(limits.time_limit_ms);
+    const Deadline deadline(arguments.limits.time_limit_ms);
     SolvedScene solved;
     try {
         LimitedProblem made = make_problem_of(scene, parameters, solver.extent(), deadline);
         const double problem_ms = watch.elapsed_ms();
         if (made.problem) {
             solved.problem = *std::move(made.problem);
-            solved.report =
-                solver.solve(solved.problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
+            arguments.limits.time_limit_ms = deadline.remaining_ms();
+            solved.report = solver.solve(solved.problem, arguments);
         } else {
             solved.report.status = SolveStatus::stopped;
             solved.report.stopped_by = made.stopped_by;
@@ -43,13 +43,13 @@ SolvedScene solve(RldSolver& solver, const Scene& scene, const RldParameters& pa
 }  // namespace
 
 SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                        const SolveLimits& limits, const LaneGraph* start) {
-    return solve(solver, scene, parameters, limits, start, make_problem);
+                        const SolveArguments& arguments) {
+    return solve(solver, scene, parameters, arguments, make_problem);
 }
 
 SolvedScene solve_valid_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                              const SolveLimits& limits, const LaneGraph* start) {
-    return solve(solver, scene, parameters, limits, start, make_problem_of_valid_scene);
+                              const SolveArguments& arguments) {
+    return solve(solver, scene, parameters, arguments, make_problem_of_valid_scene);
 }
 
 }  // namespace conelane

@@ -1,6 +1,5 @@
-#include "solvers/exhaustive.hpp"
-
 #include "model/deadline.hpp"
+#include "solvers/core_entries.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -144,9 +143,8 @@ class Enumeration {
 };
 
 class ExhaustiveSolver : public RldSolver {
-    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* /*start*/,
-             RldReport& report) override {
-        const Deadline deadline(limits.time_limit_ms);
+    void run(const LaneGraphProblem& problem, const SolveArguments& arguments, RldReport& report) override {
+        const Deadline deadline(arguments.limits.time_limit_ms);
         if (problem.cone_count > kExhaustiveMostCones) {
             report.message = "exhaustive takes at most " + std::to_string(kExhaustiveMostCones) +
                              " cones, not " + std::to_string(problem.cone_count);
@@ -164,5 +162,11 @@ class ExhaustiveSolver : public RldSolver {
 std::unique_ptr<RldSolver> make_exhaustive_solver() {
     return std::make_unique<ExhaustiveSolver>();
 }
+
+constexpr RldSolverEntry kExhaustive{.name = "exhaustive",
+                                     .description = "every pair of paths, at most 9 cones",
+                                     .traits = SolverTrait::exact,
+                                     .make = [](Formulation) { return make_exhaustive_solver(); },
+                                     .max_cones = kExhaustiveMostCones};
 
 }  // namespace conelane

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "conelane/solver_entry.hpp"
+#include "conelane/core_solvers.hpp"
 
 #include <span>
 #include <string_view>

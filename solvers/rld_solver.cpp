@@ -57,8 +57,9 @@ std::string fault(const LaneGraphProblem& problem, const SolveLimits& limits, co
 
 }  // namespace
 
-RldReport RldSolver::solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                           const LaneGraph* start) {
+RldReport RldSolver::solve(const LaneGraphProblem& problem, const SolveArguments& arguments) {
+    const SolveLimits& limits = arguments.limits;
+    const LaneGraph* const start = arguments.start;
     RldReport report;
     const auto fail = [&report](std::string message) {
         report = {};
@@ -73,7 +74,7 @@ RldReport RldSolver::solve(const LaneGraphProblem& problem, const SolveLimits& l
         if (const std::string_view wrong = invalidity(limits); !wrong.empty()) {
             report.message = wrong;
         } else {
-            run(problem, limits, start, report);
+            run(problem, arguments, report);
         }
     } catch (const std::bad_alloc&) {
         throw;

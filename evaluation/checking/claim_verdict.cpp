@@ -71,7 +71,8 @@ const RldSolverEntry* other_solver(std::string_view claimant) {
     const RldSolverEntry* const pair_search = find_rld_solver(kPathPair);
     if (pair_search != nullptr && claimant != pair_search->name) return pair_search;
     const auto entry = std::ranges::find_if(rld_solvers(), [&](const RldSolverEntry& solver) {
-        return solver.exact && solver.uses_formulation && solver.name != claimant;
+        return solver.has(SolverTrait::exact) && solver.has(SolverTrait::uses_formulation) &&
+               solver.name != claimant;
     });
     return entry == rld_solvers().end() ? nullptr : &*entry;
 }
@@ -79,7 +80,8 @@ const RldSolverEntry* other_solver(std::string_view claimant) {
 ClaimVerdict ask_solver(const RldSolverEntry& entry, const BoundClaim& claim, double time_limit_ms) {
     const std::unique_ptr<RldSolver> solver = entry.make(Formulation::tight);
     const RldReport report =
-        solve_scene(*solver, claim.scene, claim.parameters, {.time_limit_ms = time_limit_ms}).report;
+        solve_scene(*solver, claim.scene, claim.parameters, {.limits = {.time_limit_ms = time_limit_ms}})
+            .report;
     ClaimVerdict verdict{Kind::unverified, std::string(entry.name), {}, {}};
     if (report.status == SolveStatus::infeasible) verdict.kind = Kind::proven;
     if (report.bound && claim.follows_from(*report.bound)) verdict.kind = Kind::proven;

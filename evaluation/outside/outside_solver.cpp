@@ -59,9 +59,8 @@ void conclude_without_point(Status status, std::optional<double> cutoff, RldRepo
 OutsideSolver::OutsideSolver(const OutsideDetector& detector, const OutsideSolverOptions& options)
     : program_(detector.source, options.patience), options_(options), model_(options.formulation) {}
 
-void OutsideSolver::run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
-                        RldReport& report) {
-    const Deadline deadline(limits.time_limit_ms);
+void OutsideSolver::run(const LaneGraphProblem& problem, const SolveArguments& arguments, RldReport& report) {
+    const Deadline deadline(arguments.limits.time_limit_ms);
     engine_ms_.reset();
     if (problem.edges.empty()) {
         report.status = SolveStatus::infeasible;
@@ -77,20 +76,20 @@ void OutsideSolver::run(const LaneGraphProblem& problem, const SolveLimits& limi
     if (options_.all_rows) add_connecting_flow(program, problem);
     report.build_ms = build_watch.elapsed_ms();
     const Stopwatch solve_watch;
-    if (start != nullptr && is_feasible(problem, *start)) {
-        report.objective = objective(problem, *start);
-        report.lane_graph = *start;
+    if (arguments.start != nullptr && is_feasible(problem, *arguments.start)) {
+        report.objective = objective(problem, *arguments.start);
+        report.lane_graph = *arguments.start;
     }
-    solve_and_separate(problem, program, limits, deadline, report);
+    solve_and_separate(problem, program, arguments.limits.absolute_gap, arguments.seed, deadline, report);
     report.solve_ms = solve_watch.elapsed_ms();
 }
 
 SolverProgram::Answer OutsideSolver::ask(const BinaryProgram& program, const SolverQuestion& question) {
     SolverProgram::Answer answer;
-    if (seed_ == 0) {
+    if (question.seed == 0) {
         answer = program_.solve(program, question);
     } else {
-        const PermutedProgram other = permuted(program, seed_);
+        const PermutedProgram other = permuted(program, question.seed);
         answer = program_.solve(other.program, question);
         answer.solution.point = other.point_of(answer.solution.point);
     }
@@ -101,10 +100,10 @@ SolverProgram::Answer OutsideSolver::ask(const BinaryProgram& program, const Sol
 
 /// A lane graph in the report is the start: the solver looks for a better one.
 void OutsideSolver::solve_and_separate(const LaneGraphProblem& problem, BinaryProgram& program,
-                                       const SolveLimits& limits, const Deadline& deadline,
+                                       double absolute_gap, std::uint64_t seed, const Deadline& deadline,
                                        RldReport& report) {
-    SolverQuestion question{deadline.remaining_ms(), limits.absolute_gap, options_.threads, seed_};
-    if (report.lane_graph) question.cutoff = *report.objective - limits.absolute_gap;
+    SolverQuestion question{deadline.remaining_ms(), absolute_gap, options_.threads, seed};
+    if (report.lane_graph) question.cutoff = *report.objective - absolute_gap;
     int separated = 0;
     while (true) {
         question.time_limit_ms = deadline.remaining_ms();
@@ -136,7 +135,7 @@ void OutsideSolver::solve_and_separate(const LaneGraphProblem& problem, BinaryPr
             return fail(report, fmt::format("it claims the bound {:.9g}, its point has the objective {:.9g}",
                                             *report.bound, cost));
         if (solution.status == Status::optimal && report.lane_graph &&
-            cost > *report.objective + limits.absolute_gap + tolerance(cost))
+            cost > *report.objective + absolute_gap + tolerance(cost))
             return fail(report, "the start is cheaper than its optimum");
         report.status = solution.status == Status::optimal ? SolveStatus::optimal : SolveStatus::feasible;
         if (report.status == SolveStatus::feasible) report.stopped_by = StopReason::time;
@@ -148,7 +147,7 @@ void OutsideSolver::solve_and_separate(const LaneGraphProblem& problem, BinaryPr
         report.bound =
             report.bound ? std::optional(std::min(*report.bound, *report.objective)) : std::nullopt;
         const bool is_apart = report.bound && *report.objective - *report.bound >
-                                                  std::max(limits.absolute_gap, tolerance(*report.objective));
+                                                  std::max(absolute_gap, tolerance(*report.objective));
         if (report.status == SolveStatus::optimal && is_apart) {
             report.status = SolveStatus::feasible;
             report.message = fmt::format("its optimum is proven to a gap of {:.3g} only",

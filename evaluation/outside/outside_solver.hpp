@@ -26,17 +26,13 @@ struct OutsideSolverOptions {
 /// point that is not integral or violates a row, a wrong objective, a bound above a known lane graph, a proof
 /// of infeasibility that the start refutes, a crash, a missed limit and invalid output. An optimum with a gap
 /// above the requested one counts as feasible. A wrong optimum can only be found by comparison with another
-/// solver.
+/// solver. With a seed, rows and columns are in an order drawn from it, and the program also gets the seed.
 class OutsideSolver : public RldSolver {
   public:
     /// Precondition: the detector has a command. Throws as SolverProgram does.
     OutsideSolver(const OutsideDetector& detector, const OutsideSolverOptions& options);
 
     [[nodiscard]] EdgeExtent extent() const override { return parts(options_.formulation).extent; }
-
-    /// From here on, rows and columns are in an order drawn from the seed, which the program also gets. With
-    /// 0, the default, their order is unchanged.
-    void set_seed(std::uint64_t seed) { seed_ = seed; }
 
     /// The solver's name and version, as the program reports it for the last solve.
     [[nodiscard]] const std::string& version() const { return version_; }  ///< empty if it reports none
@@ -47,15 +43,13 @@ class OutsideSolver : public RldSolver {
     [[nodiscard]] std::size_t peak_bytes() const { return program_.peak_bytes(); }
 
   private:
-    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
-             RldReport& report) override;
-    void solve_and_separate(const LaneGraphProblem& problem, BinaryProgram& program,
-                            const SolveLimits& limits, const Deadline& deadline, RldReport& report);
+    void run(const LaneGraphProblem& problem, const SolveArguments& arguments, RldReport& report) override;
+    void solve_and_separate(const LaneGraphProblem& problem, BinaryProgram& program, double absolute_gap,
+                            std::uint64_t seed, const Deadline& deadline, RldReport& report);
     [[nodiscard]] SolverProgram::Answer ask(const BinaryProgram& program, const SolverQuestion& question);
 
     SolverProgram program_;
     OutsideSolverOptions options_;
-    std::uint64_t seed_ = 0;
     std::string version_;
     std::optional<double> engine_ms_;
     LaneGraphModel model_;

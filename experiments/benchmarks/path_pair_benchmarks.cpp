@@ -88,7 +88,7 @@ void run_ablation(benchmark::State& state, const PathPairOptions& options, const
     for (auto iteration : state) {
         static_cast<void>(iteration);
         for (const LaneGraphProblem& problem : problems) {
-            const RldReport report = solver->solve(problem, {kTimeLimit_ms});
+            const RldReport report = solver->solve(problem, {.limits = {kTimeLimit_ms}});
             ++solves;
             nodes += report.nodes;
             if (report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible) ++proven;
@@ -109,7 +109,8 @@ void run_scenes(benchmark::State& state, const std::vector<Scene>& scenes) {
     for (auto iteration : state) {
         static_cast<void>(iteration);
         for (std::size_t i = 0; i < scenes.size(); ++i) {
-            times_us[i].push_back(1e3 * solve_scene(*solver, scenes[i], {}, {kTimeLimit_ms}).total_ms);
+            times_us[i].push_back(1e3 *
+                                  solve_scene(*solver, scenes[i], {}, {.limits = {kTimeLimit_ms}}).total_ms);
         }
     }
     std::vector<double> medians_us;
@@ -124,7 +125,7 @@ void run_verification(benchmark::State& state, const Problems& problems) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
     std::vector<std::pair<const LaneGraphProblem*, LaneGraph>> answers;
     for (const LaneGraphProblem& problem : problems) {
-        const RldReport report = solver->solve(problem, {kTimeLimit_ms});
+        const RldReport report = solver->solve(problem, {.limits = {kTimeLimit_ms}});
         if (report.lane_graph) answers.emplace_back(&problem, *report.lane_graph);
     }
     if (answers.empty()) return state.SkipWithError("no scene has a lane graph");
@@ -145,7 +146,8 @@ void run_memory(benchmark::State& state, const Problems& problems) {
         static_cast<void>(iteration);
         const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
         for (std::size_t solve = 0; solve < kMemorySolves; ++solve) {
-            benchmark::DoNotOptimize(solver->solve(problems[solve % problems.size()], {kTimeLimit_ms}));
+            benchmark::DoNotOptimize(
+                solver->solve(problems[solve % problems.size()], {.limits = {kTimeLimit_ms}}));
             if (solve + 1 == kWarmSolves) state.counters["kB_after_1000"] = resident_kB();
         }
         state.counters["kB_at_end"] = resident_kB();

@@ -77,7 +77,7 @@ void register_stages(const Scenes& all, Formulation formulation, std::int64_t si
 void register_solve(const Scenes& all, const RldSolverEntry& entry, Formulation formulation,
                     std::int64_t size) {
     std::string name = "solve/" + std::string(entry.name);
-    if (entry.uses_formulation) name += "/" + std::string(to_string(formulation));
+    if (entry.has(SolverTrait::uses_formulation)) name += "/" + std::string(to_string(formulation));
     const auto cones = static_cast<std::size_t>(size);
     benchmark::RegisterBenchmark((name + "/" + std::to_string(size)).c_str(), [=, &entry](
                                                                                   benchmark::State& state) {
@@ -98,7 +98,7 @@ void register_all(const Scenes& all) {
     for (const RldSolverEntry& entry : rld_solvers()) {
         for (const std::int64_t size : kSizes) {
             register_solve(all, entry, Formulation::tight, size);
-            if (entry.uses_formulation && size <= kMaxPaperSize)
+            if (entry.has(SolverTrait::uses_formulation) && size <= kMaxPaperSize)
                 register_solve(all, entry, Formulation::paper, size);
         }
     }

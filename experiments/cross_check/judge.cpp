@@ -244,7 +244,7 @@ class Judgement {
 std::vector<std::string> exact_solver_names() {
     std::vector<std::string> names;
     for (const RldSolverEntry& solver : rld_solvers()) {
-        if (solver.exact) names.emplace_back(solver.name);
+        if (solver.has(SolverTrait::exact)) names.emplace_back(solver.name);
     }
     return names;
 }
@@ -253,18 +253,20 @@ std::vector<CheckedSolver> make_checked_solvers(std::span<const std::string> nam
     std::vector<CheckedSolver> solvers;
     for (const std::string& name : names) {
         const RldSolverEntry* const entry = find_rld_solver(name);
-        if (entry == nullptr || !entry->exact)
+        if (entry == nullptr || !entry->has(SolverTrait::exact))
             throw InvalidInput("--solvers", "'" + name + "' is not an exact solver of this build");
         const std::shared_ptr<RldSolver> solver = entry->make(formulation);
         solvers.push_back(
-            {entry->uses_formulation ? fmt::format("{} ({})", name, to_string(formulation)) : name,
+            {entry->has(SolverTrait::uses_formulation) ? fmt::format("{} ({})", name, to_string(formulation))
+                                                       : name,
              [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms) {
-                 return solve_scene(*solver, scene, parameters, {time_limit_ms}).report;
+                 return solve_scene(*solver, scene, parameters, {.limits = {time_limit_ms}}).report;
              },
              entry->max_cones,
              [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms,
                       const LaneGraph& start) {
-                 return solve_scene(*solver, scene, parameters, {time_limit_ms}, &start).report;
+                 return solve_scene(*solver, scene, parameters, {.limits = {time_limit_ms}, .start = &start})
+                     .report;
              }});
     }
     return solvers;

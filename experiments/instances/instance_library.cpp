@@ -11,8 +11,7 @@
 #include "evaluation/scenes/scene_set.hpp"
 #include "experiments/instances/instance_features.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/milp/cbc_main_solver.hpp"
-#include "solvers/milp/cbc_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
@@ -53,9 +52,8 @@ SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formul
     const Deadline deadline(time_limit_ms);
     const Stopwatch watch;
     // CBC's full machinery is faster on the printed program, `cbc` on the tight one.
-    const std::unique_ptr<MilpSolver> solver =
-        formulation == Formulation::paper ? make_cbc_main_solver() : make_cbc_solver();
-    const std::unique_ptr<MilpSession> session = solver->load(model.program());
+    const MilpBackend& backend = formulation == Formulation::paper ? kCbcMain : kCbc;
+    const std::unique_ptr<MilpSession> session = backend.load(model.program());
     SolvedProgram solved;
     while (true) {
         solved.report = session->solve({.time_limit_ms = deadline.remaining_ms()});
@@ -79,7 +77,8 @@ TimedReport solve_exactly(const Scene& scene, const std::string& name, const Rld
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
     const Stopwatch watch;
     TimedReport timed;
-    timed.report = solve_scene(*path_pair, scene, parameters, {.time_limit_ms = time_limit_ms}).report;
+    timed.report =
+        solve_scene(*path_pair, scene, parameters, {.limits = {.time_limit_ms = time_limit_ms}}).report;
     timed.time_ms = watch.elapsed_ms();
     if (timed.report.status == SolveStatus::error) throw InvalidInput(name, timed.report.message);
     return timed;

@@ -34,7 +34,8 @@ void add_rows(const AnnotatedScene& scene, RldSolver& solver, const AnytimeOptio
             rows.back().limit_ms = limit_ms;
             continue;
         }
-        const RldReport report = solve_scene(solver, scene.scene, options.parameters, {limit_ms}).report;
+        const RldReport report =
+            solve_scene(solver, scene.scene, options.parameters, {.limits = {limit_ms}}).report;
         if (report.status == SolveStatus::error) throw InvalidInput(scene.scene.id, report.message);
         const bool proven = report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible;
         rows.push_back({&scene, limit_ms, proven, report.objective, report.bound, {}});

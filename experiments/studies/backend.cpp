@@ -2,14 +2,14 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/version.hpp"
-#include "experiments/studies/permuted_solver.hpp"
+#include "evaluation/outside/permuted_program.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
-#include <coin/CbcConfig.h>
-#include <coin/ClpConfig.h>
 #include <fmt/format.h>
 
 namespace conelane::experiments {
@@ -21,12 +21,49 @@ const RldSolverEntry& entry_of(const Backend& backend) {
     return *entry;
 }
 
+class PermutedSession : public MilpSession {
+  public:
+    PermutedSession(const MilpBackend& backend, PermutedProgram program)
+        : program_(std::move(program)), session_(backend.load(program_.program)) {}
+
+    MilpReport solve(const MilpLimits& limits) override {
+        MilpReport report = session_->solve(limits);
+        report.point = program_.point_of(report.point);
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        std::vector<ProgramRow> renamed(rows.begin(), rows.end());
+        for (ProgramRow& row : renamed) {
+            for (auto& [column, value] : row.terms)
+                column = static_cast<int>(program_.column_of[static_cast<std::size_t>(column)]);
+        }
+        session_->add_rows(renamed);
+    }
+
+  private:
+    PermutedProgram program_;
+    std::unique_ptr<MilpSession> session_;
+};
+
+std::unique_ptr<RldSolver> make_inside(const RldSolverEntry& entry, Formulation formulation) {
+    const auto milp =
+        std::ranges::find(milp_backends(), entry.name, [](const MilpBackend& b) { return b.entry.name; });
+    if (milp == milp_backends().end()) return entry.make(formulation);
+    return make_milp_rld_solver(
+        [&backend = *milp](const BinaryProgram& program, std::uint64_t seed) -> std::unique_ptr<MilpSession> {
+            if (seed == 0) return backend.load(program);
+            return std::make_unique<PermutedSession>(backend, permuted(program, seed));
+        },
+        formulation);
+}
+
 }  // namespace
 
 bool Backend::uses_formulation() const {
     if (outside) return true;
     const RldSolverEntry* entry = find_rld_solver(solver);
-    return entry != nullptr && entry->uses_formulation;
+    return entry != nullptr && entry->has(SolverTrait::uses_formulation);
 }
 
 std::string Backend::label() const {
@@ -45,7 +82,7 @@ bool Backend::takes(std::size_t cones) const {
 std::vector<Backend> exact_backends() {
     std::vector<Backend> backends;
     for (const RldSolverEntry& entry : rld_solvers()) {
-        if (entry.exact) backends.push_back({std::string(entry.name)});
+        if (entry.has(SolverTrait::exact)) backends.push_back({std::string(entry.name)});
     }
     return backends;
 }
@@ -59,10 +96,12 @@ Backend backend_of(std::string_view name) {
     const std::size_t slash = std::min(name.find('/'), name.size());
     Backend backend{std::string(name.substr(0, slash))};
     const RldSolverEntry& entry = entry_of(backend);
-    if (!entry.exact) throw InvalidInput("--solvers", "'" + backend.solver + "' proves no optimum");
+    if (!entry.has(SolverTrait::exact))
+        throw InvalidInput("--solvers", "'" + backend.solver + "' proves no optimum");
     if (slash == name.size()) return backend;
     for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
-        if (!entry.uses_formulation || to_string(formulation) != name.substr(slash + 1)) continue;
+        if (!entry.has(SolverTrait::uses_formulation) || to_string(formulation) != name.substr(slash + 1))
+            continue;
         backend.formulation = formulation;
         return backend;
     }
@@ -70,32 +109,24 @@ Backend backend_of(std::string_view name) {
                        fmt::format("'{}' has no formulation '{}'", backend.solver, name.substr(slash + 1)));
 }
 
-BackendSolver::BackendSolver(const Backend& backend, std::uint64_t seed) : name_(backend.solver) {
+BackendSolver::BackendSolver(const Backend& backend) {
     if (backend.outside) {
         outside_ = std::make_unique<OutsideSolver>(
             *backend.outside, OutsideSolverOptions{backend.formulation, backend.all_rows});
-        outside_->set_seed(seed);
         return;
     }
     const RldSolverEntry& entry = entry_of(backend);
-    if (seed != 0) inside_ = make_permuted_solver(backend.solver, backend.formulation, seed);
-    if (!inside_) inside_ = entry.make(backend.formulation);
+    library_ = entry.library;
+    inside_ = make_inside(entry, backend.formulation);
 }
 
 std::optional<double> BackendSolver::engine_ms() const {
     return outside_ ? outside_->engine_ms() : std::nullopt;
 }
 
-bool BackendSolver::set_seed(std::uint64_t seed) {
-    if (outside_) outside_->set_seed(seed);
-    return outside_ != nullptr;
-}
-
 std::string BackendSolver::version() const {
     if (outside_) return outside_->version();
-    if (name_.starts_with("cbc")) return "CBC " CBC_VERSION ", Clp " CLP_VERSION;
-    if (name_.starts_with("clp")) return "Clp " CLP_VERSION;
-    return "conelane " + std::string(conelane::version());
+    return library_.empty() ? "conelane " + std::string(conelane::version()) : std::string(library_);
 }
 
 std::optional<std::size_t> BackendSolver::end() {

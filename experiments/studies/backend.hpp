@@ -6,7 +6,6 @@
 #include "evaluation/outside/outside_solver.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,22 +42,20 @@ struct Backend {
 /// build, and as SolverProgram does.
 class BackendSolver {
   public:
-    /// With a seed other than 0 rows and columns of the program stand in an order drawn from it, where the
-    /// solver has a program: cbc, cbc-main, clp-bb, and those from outside, which are told the seed too.
-    explicit BackendSolver(const Backend& backend, std::uint64_t seed = 0);
+    explicit BackendSolver(const Backend& backend);
 
+    /// Where the solver has a program, rows and columns are in an order drawn from SolveArguments::seed; rows
+    /// that are added later keep their own order. A program from outside is told the seed, too.
     [[nodiscard]] RldSolver& solver() { return outside_ ? *outside_ : *inside_; }
     /// What the solver says that its own search took, of the last solve [ms]; absent if it says nothing.
     [[nodiscard]] std::optional<double> engine_ms() const;
-    /// Changes the order of rows and columns of a program from outside; false if that takes a new object.
-    [[nodiscard]] bool set_seed(std::uint64_t seed);
     /// Name and version of the solver, and of its libraries; empty if it says nothing.
     [[nodiscard]] std::string version() const;
     /// Ends a program from outside; the largest resident memory that it had [bytes], absent of other solvers.
     [[nodiscard]] std::optional<std::size_t> end();
 
   private:
-    std::string name_;
+    std::string_view library_;
     std::unique_ptr<OutsideSolver> outside_;
     std::unique_ptr<RldSolver> inside_;
 };

@@ -62,22 +62,19 @@ class Driver {
         std::optional<LaneGraph> start;
         const Stopwatch watch;
         if (previous_) start = map_by_cone_id(previous_->first, previous_->second, cones);
-        return solve(annotated, cones, solver_, start ? &*start : nullptr, watch.elapsed_ms(),
-                     options_.time_limit_ms);
+        const double mapped_ms = watch.elapsed_ms();
+        BackendRow row =
+            solve(annotated, cones,
+                  {.limits = {options_.time_limit_ms - mapped_ms}, .start = start ? &*start : nullptr});
+        row.latency_ms += mapped_ms;
+        return row;
     }
 
     /// From nothing, in another order of cones, rows and columns.
     BackendRow solve_permuted(const AnnotatedScene& annotated, const Scene& cones, std::size_t permutation) {
         const std::uint64_t seed = permutation_seed(annotated.scene.id, permutation, options_.seed);
         const Scene shuffled = with_shuffled_cones(cones, seed);
-        BackendRow row;
-        if (solver_.set_seed(seed)) {
-            row = solve(annotated, shuffled, solver_, nullptr, 0.0, options_.time_limit_ms);
-            (void)solver_.set_seed(0);
-        } else {
-            BackendSolver other(backend_, seed);
-            row = solve(annotated, shuffled, other, nullptr, 0.0, options_.time_limit_ms);
-        }
+        BackendRow row = solve(annotated, shuffled, {.limits = {options_.time_limit_ms}, .seed = seed});
         row.permutation = permutation;
         return row;
     }
@@ -86,7 +83,7 @@ class Driver {
     void add_steps(BackendRow& row, const Scene& cones) {
         for (const double limit_ms : options_.gap_limits_ms) {
             if (limit_ms >= std::min(row.latency_ms, options_.time_limit_ms)) break;
-            const BackendRow step = solve(*row.scene, cones, solver_, nullptr, 0.0, limit_ms);
+            const BackendRow step = solve(*row.scene, cones, {.limits = {limit_ms}});
             if (step.status == SolveStatus::error) continue;
             const bool proven = step.status == SolveStatus::optimal;
             row.steps.push_back(
@@ -97,10 +94,9 @@ class Driver {
     }
 
   private:
-    BackendRow solve(const AnnotatedScene& annotated, const Scene& cones, BackendSolver& solver,
-                     const LaneGraph* start, double mapped_ms, double limit_ms) {
+    BackendRow solve(const AnnotatedScene& annotated, const Scene& cones, const SolveArguments& arguments) {
         const auto [problem, report, solved_ms] =
-            solve_scene(solver.solver(), cones, options_.parameters, {limit_ms - mapped_ms}, start);
+            solve_scene(solver_.solver(), cones, options_.parameters, arguments);
         BackendRow row{.scene = &annotated,
                        .cones = cones.cones.size(),
                        .backend = backend_,
@@ -108,9 +104,9 @@ class Driver {
                        .message = report.message,
                        .objective = report.objective,
                        .nodes = report.nodes,
-                       .latency_ms = mapped_ms + solved_ms,
+                       .latency_ms = solved_ms,
                        .bound = report.bound,
-                       .engine_ms = solver.engine_ms(),
+                       .engine_ms = solver_.engine_ms(),
                        .rounds = report.rounds,
                        .stopped_by = report.stopped_by};
         if (!report.lane_graph) return row;

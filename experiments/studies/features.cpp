@@ -74,7 +74,7 @@ std::vector<FeatureRow> feature_rows(std::span<const AnnotatedScene> scenes, con
             const Scene cones = nearest_ahead(scene->scene, size);
             FeatureRow row{scene, size, features_of(cones, options.parameters), 0.0, {}};
             const auto [problem, report, total_ms] =
-                solve_scene(*solver, cones, options.parameters, {options.time_limit_ms});
+                solve_scene(*solver, cones, options.parameters, {.limits = {options.time_limit_ms}});
             row.solve_ms = total_ms;
             if (report.status == SolveStatus::optimal && row.features.relaxation)
                 row.lp_gap = std::max(0.0, *report.objective - row.features.relaxation->optimum) /

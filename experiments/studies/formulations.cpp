@@ -50,7 +50,7 @@ class RowSums {
     /// The optimum, if it was proven.
     std::optional<double> add(const Scene& scene) {
         const auto [problem, report, solved_ms] =
-            solve_scene(*solver_, scene, options_.parameters, {options_.time_limit_ms});
+            solve_scene(*solver_, scene, options_.parameters, {.limits = {options_.time_limit_ms}});
         if (report.status == SolveStatus::error) {
             throw InvalidInput(scene.id, row_.solver + " failed: " + report.message);
         }

@@ -42,7 +42,8 @@ GrowthRow solve(const AnnotatedScene& scene, const Scene& cones, RldSolver& solv
     row.all_visible = row.cones == scene.scene.cones.size();
     row.density = neighbours_per_cone(cones);
     const double begin_ms = thread_cpu_ms();
-    const SolvedScene solved = solve_scene(solver, cones, options.parameters, {options.time_limit_ms});
+    const SolvedScene solved =
+        solve_scene(solver, cones, options.parameters, {.limits = {options.time_limit_ms}});
     row.cpu_ms = thread_cpu_ms() - begin_ms;
     const RldReport& report = solved.report;
     if (report.status == SolveStatus::error) throw InvalidInput(cones.id, report.message);

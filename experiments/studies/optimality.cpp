@@ -70,7 +70,7 @@ class Lap {
             row.scene = &annotated;
             row.costs = costs.name;
             const auto [problem, report, solved_ms] =
-                solve_scene(*solver_, cones, costs.parameters, {options_.time_limit_ms});
+                solve_scene(*solver_, cones, costs.parameters, {.limits = {options_.time_limit_ms}});
             if (report.status == SolveStatus::error) throw InvalidInput(cones.id, report.message);
             take_optimum(row, report, costs, cones);
             if (answer.status == LaneStatus::found)

@@ -35,7 +35,7 @@ class RowSums {
                               AnswerErrors& errors) {
         const Scene scene = nearest_ahead(annotated.scene, row_.cones);
         const auto [problem, report, solved_ms] =
-            solve_scene(*solver_, scene, options_.parameters, {options_.time_limit_ms});
+            solve_scene(*solver_, scene, options_.parameters, {.limits = {options_.time_limit_ms}});
         if (report.status == SolveStatus::error && row_.solver == kExact) {
             throw InvalidInput(scene.id, report.message);
         }
@@ -149,7 +149,7 @@ std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scene
         RowSums exact(size, *find_rld_solver(kExact), options);
         std::vector<RowSums> relaxations;
         for (const RldSolverEntry& entry : rld_solvers()) {
-            if (!entry.exact) relaxations.emplace_back(size, entry, options);
+            if (!entry.has(SolverTrait::exact)) relaxations.emplace_back(size, entry, options);
         }
         for (const AnnotatedScene* scene : of_size) {
             const std::optional<double> least = exact.add(*scene, std::nullopt, errors);

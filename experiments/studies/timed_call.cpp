@@ -22,9 +22,9 @@ TimedCall call_of(const KnownDetector& known) {
 TimedCall call_of(const RldSolverEntry& entry) {
     const std::shared_ptr<RldSolver> solver = entry.make(Formulation::tight);
     // For a relaxation that finds no lane, an error is a valid answer.
-    const bool may_fail = !entry.exact;
+    const bool may_fail = !entry.has(SolverTrait::exact);
     return {std::string(entry.name), [solver, may_fail](const Scene& scene, double time_limit_ms) {
-                const RldReport report = solve_scene(*solver, scene, {}, {time_limit_ms}).report;
+                const RldReport report = solve_scene(*solver, scene, {}, {.limits = {time_limit_ms}}).report;
                 if (report.status == SolveStatus::error && !may_fail)
                     throw InvalidInput(scene.id, report.message);
             }};

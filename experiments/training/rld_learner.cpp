@@ -112,7 +112,7 @@ RldLearner::Loss RldLearner::add(const AnnotatedScene& scene, const RldParameter
         const bool is_true = std::ranges::binary_search(truth.edges, Edge{edge.i, edge.j});
         edge.cost += (is_true ? 1.0 : -1.0) * (is_near ? margin_.near : margin_.far);
     }
-    const RldReport report = solver_->solve(problem, {}, &truth);
+    const RldReport report = solver_->solve(problem, {.start = &truth});
     loss.proven = report.status == SolveStatus::optimal;
     if (!report.lane_graph) return loss;
     loss.found = *report.lane_graph == truth;

@@ -46,7 +46,7 @@ EvaluatedScene evaluate(RldSolver& solver, const Scene& scene, const RldParamete
     EvaluatedScene evaluated;
     evaluated.seen = count ? nearest_ahead(scene, *count) : scene;
     static_cast<SolvedScene&>(evaluated) =
-        solve_scene(solver, evaluated.seen, parameters, {options.time_limit_ms});
+        solve_scene(solver, evaluated.seen, parameters, {.limits = {options.time_limit_ms}});
     if (evaluated.report.status == SolveStatus::error) throw InvalidInput(scene.id, evaluated.report.message);
     if (!evaluated.report.lane_graph) return evaluated;
     evaluated.answer = answer_of(*evaluated.report.lane_graph, evaluated.seen, options);

@@ -279,7 +279,7 @@ void conelane_solve(const double* scene_numbers, std::size_t scene_count, const 
     const auto entry = std::ranges::find(core_solvers(), "path-pair", &RldSolverEntry::name);
     const std::unique_ptr<RldSolver> solver = entry->make(Formulation::tight);
     const SolvedScene solved = solve_scene(*solver, scene, read_parameters({parameters, parameter_count}),
-                                           {.time_limit_ms = limit_ms});
+                                           {.limits = {.time_limit_ms = limit_ms}});
     const RldReport& report = solved.report;
     begin();
     out.member("status", to_string(report.status));

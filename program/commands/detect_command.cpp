@@ -144,7 +144,8 @@ void detect(DetectOptions& options) {
 void list_solvers() {
     for (const RldSolverEntry& solver : rld_solvers()) {
         fmt::print("{:<16} {:<28} {}\n", solver.name,
-                   solver.uses_formulation ? "formulations: tight, paper" : "", solver.description);
+                   solver.has(SolverTrait::uses_formulation) ? "formulations: tight, paper" : "",
+                   solver.description);
     }
 }
 

@@ -111,8 +111,9 @@ void solve_all(const Options& options) {
         if (const auto lane = lanes.find(scene.id); lane != lanes.end() && !lane->second.closed)
             start = lane_graph_of(lane->second, scene);
         if (start && !options.start.empty()) ++started;
-        const RldReport report =
-            solve_scene(*solver, scene, parameters, options.limits, start ? &*start : nullptr).report;
+        const RldReport report = solve_scene(*solver, scene, parameters,
+                                             {.limits = options.limits, .start = start ? &*start : nullptr})
+                                     .report;
         SolutionRecord record{scene.id,         name,
                               formulation,      std::string(to_string(report.status)),
                               report.message,   {},

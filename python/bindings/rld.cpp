@@ -53,7 +53,7 @@ SolutionObject solve_rld(const py::object& cones, const py::object& pose, const 
     validate(chosen);
     const py::gil_scoped_release unlocked;
     SolutionObject solution;
-    SolvedScene solved = solve_scene(*entry.make(Formulation::tight), scene, chosen, limits);
+    SolvedScene solved = solve_scene(*entry.make(Formulation::tight), scene, chosen, {.limits = limits});
     if (solved.report.lane_graph) {
         if (auto lane = to_lane(*solved.report.lane_graph, scene)) solution.lane = std::move(*lane);
     }

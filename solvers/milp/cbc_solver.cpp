@@ -1,15 +1,16 @@
-#include "solvers/milp/cbc_solver.hpp"
-
 #include "model/deadline.hpp"
 #include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
+#include "solvers/milp/milp_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include <coin/CbcConfig.h>
 #include <coin/CbcModel.hpp>
+#include <coin/ClpConfig.h>
 #include <coin/OsiClpSolverInterface.hpp>
 
 namespace conelane {
@@ -114,17 +115,17 @@ class CbcSession : public MilpSession {
     bool solved_once_ = false;
 };
 
-class CbcSolver : public MilpSolver {
-  public:
-    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
-        return std::make_unique<CbcSession>(program);
-    }
-};
-
 }  // namespace
 
-std::unique_ptr<MilpSolver> make_cbc_solver() {
-    return std::make_unique<CbcSolver>();
-}
+/// First the relaxation by Clp, which is the answer if it is integral; else CbcModel's branch and bound
+/// without cuts, preprocessing, heuristics and strong branching, which is fastest on the tight formulation.
+/// The clock is checked in every iteration of Clp. Loading a program, and Clp's presolve and postsolve of the
+/// first relaxation, cannot be stopped: they overrun a limit by up to 1 ms with 24 cones, 15 ms with 200.
+/// `clp-bb` has no such part.
+constexpr MilpBackend kCbc =
+    milp_backend<CbcSession>({.name = "cbc",
+                              .description = "CBC in process, CbcModel's branch and bound",
+                              .traits = SolverTrait::refuses_huge_costs,
+                              .library = "CBC " CBC_VERSION ", Clp " CLP_VERSION});
 
 }  // namespace conelane

@@ -1,14 +1,14 @@
-#include "solvers/milp/clp_bb_solver.hpp"
-
 #include "model/deadline.hpp"
 #include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
+#include "solvers/milp/milp_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
 
+#include <coin/ClpConfig.h>
 #include <coin/ClpSimplex.hpp>
 #include <coin/OsiClpSolverInterface.hpp>
 
@@ -169,17 +169,14 @@ class ClpBranchAndBound : public MilpSession {
     std::vector<Branching> path_;
 };
 
-class ClpBranchAndBoundSolver : public MilpSolver {
-  public:
-    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
-        return std::make_unique<ClpBranchAndBound>(program);
-    }
-};
-
 }  // namespace
 
-std::unique_ptr<MilpSolver> make_clp_bb_solver() {
-    return std::make_unique<ClpBranchAndBoundSolver>();
-}
+/// Branches on the most fractional column, the nearer side first. No cuts, no heuristics; made for the tight
+/// formulation. It uses the absolute gap unchanged.
+constexpr MilpBackend kClpBb =
+    milp_backend<ClpBranchAndBound>({.name = "clp-bb",
+                                     .description = "depth-first branch and bound on a warm Clp",
+                                     .traits = SolverTrait::refuses_huge_costs,
+                                     .library = "Clp " CLP_VERSION});
 
 }  // namespace conelane

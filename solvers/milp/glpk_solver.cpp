@@ -1,6 +1,5 @@
-#include "solvers/milp/glpk_solver.hpp"
-
 #include "model/deadline.hpp"
+#include "solvers/milp/milp_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -263,17 +262,20 @@ class GlpkSession : public MilpSession {
     double min_of_rest_ = 0.0;            ///< sum of all negative costs
 };
 
-class GlpkSolver : public MilpSolver {
-  public:
-    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
-        return std::make_unique<GlpkSession>(program);
-    }
-};
-
 }  // namespace
 
-std::unique_ptr<MilpSolver> make_glpk_solver() {
-    return std::make_unique<GlpkSolver>();
-}
+#define CONELANE_TEXT_OF(number) #number
+#define CONELANE_VALUE_OF(macro) CONELANE_TEXT_OF(macro)
+
+/// GLPK's simplex and branch and bound without cuts and presolve. GLPK is under the GPL, and so is a program
+/// linked with it: CONELANE_GLPK=OFF leaves it out. Only the thread that made a session may use it. Costs of
+/// very different size are handled one after the other, since GLPK's tolerances would otherwise lose the
+/// optimum. The relaxation of a node cannot be stopped: a limit is overrun by up to one relaxation. An
+/// internal error of GLPK ends the process.
+constexpr MilpBackend kGlpk = milp_backend<GlpkSession>(
+    {.name = "glpk",
+     .description = "GLPK's branch and bound",
+     .traits = SolverTrait::reads_time_of_day | SolverTrait::refuses_huge_costs,
+     .library = "GLPK " CONELANE_VALUE_OF(GLP_MAJOR_VERSION) "." CONELANE_VALUE_OF(GLP_MINOR_VERSION)});
 
 }  // namespace conelane

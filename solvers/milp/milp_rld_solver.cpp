@@ -1,7 +1,6 @@
-#include "solvers/milp/milp_rld_solver.hpp"
-
 #include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
+#include "solvers/milp/milp_solver.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -13,40 +12,39 @@ namespace {
 
 class MilpRldSolver : public RldSolver {
   public:
-    MilpRldSolver(std::unique_ptr<MilpSolver> solver, Formulation formulation)
+    MilpRldSolver(MilpSolver solver, Formulation formulation)
         : solver_(std::move(solver)), formulation_(formulation) {}
 
     EdgeExtent extent() const override { return parts(formulation_).extent; }
 
   private:
-    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
-             RldReport& report) override {
-        const Deadline deadline(limits.time_limit_ms);
+    void run(const LaneGraphProblem& problem, const SolveArguments& arguments, RldReport& report) override {
+        const Deadline deadline(arguments.limits.time_limit_ms);
         if (problem.edges.empty()) {
             report.status = SolveStatus::infeasible;
             return;
         }
         const Stopwatch build_watch;
-        const std::unique_ptr<MilpSession> session = load(problem, deadline, report);
+        const std::unique_ptr<MilpSession> session = load(problem, arguments.seed, deadline, report);
         report.build_ms = build_watch.elapsed_ms();
         if (!session) return;
         const Stopwatch solve_watch;
-        const bool has_start = start != nullptr && is_feasible(problem, *start);
-        if (has_start) take(problem, *start, report);
-        solve_and_separate(problem, *session, limits, deadline, report);
+        const LaneGraph* const start = arguments.start;
+        if (start != nullptr && is_feasible(problem, *start)) take(problem, *start, report);
+        solve_and_separate(problem, *session, arguments.limits, deadline, report);
         report.solve_ms = solve_watch.elapsed_ms();
     }
 
     /// Nothing if a limit ended it before the program was loaded; the report then names the limit.
-    std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, const Deadline& deadline,
-                                      RldReport& report) {
+    std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, std::uint64_t seed,
+                                      const Deadline& deadline, RldReport& report) {
         if (!model_) model_.emplace(formulation_);
         if (const auto struck = model_->update(problem, deadline)) {
             report.status = SolveStatus::stopped;
             report.stopped_by = struck;
             return nullptr;
         }
-        return solver_->load(model_->program());
+        return solver_(model_->program(), seed);
     }
 
     static void take(const LaneGraphProblem& problem, LaneGraph graph, RldReport& report) {
@@ -115,14 +113,14 @@ class MilpRldSolver : public RldSolver {
         }
     }
 
-    std::unique_ptr<MilpSolver> solver_;
+    MilpSolver solver_;
     Formulation formulation_;
     std::optional<LaneGraphModel> model_;  ///< built once, then updated
 };
 
 }  // namespace
 
-std::unique_ptr<RldSolver> make_milp_rld_solver(std::unique_ptr<MilpSolver> solver, Formulation formulation) {
+std::unique_ptr<RldSolver> make_milp_rld_solver(MilpSolver solver, Formulation formulation) {
     return std::make_unique<MilpRldSolver>(std::move(solver), formulation);
 }
 

@@ -1,11 +1,16 @@
 #pragma once
 
-#include "conelane/solve_report.hpp"
+#include "conelane/core_solvers.hpp"
 #include "model/binary_program.hpp"
 
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace conelane {
 
@@ -18,6 +23,16 @@ struct MilpLimits {
     double cutoff = std::numeric_limits<double>::infinity();
 };
 
+/// What a MILP solver answers. Absent values are unknown.
+struct MilpReport {
+    SolveStatus status = SolveStatus::error;
+    std::optional<StopReason> stopped_by;
+    std::vector<double> point;    ///< the incumbent by column; empty without an incumbent
+    std::optional<double> bound;  ///< proven lower bound of the objective
+    std::int64_t nodes = 0;       ///< branch-and-bound nodes; 0 if the first relaxation was integral
+    std::string message;
+};
+
 /// One program loaded into a MILP solver; rows may be added between solves. Serves one thread.
 class MilpSession {
   public:
@@ -28,12 +43,45 @@ class MilpSession {
     virtual void add_rows(std::span<const ProgramRow> rows) = 0;
 };
 
-/// A solver of binary programs; it never sees cones.
-class MilpSolver {
-  public:
-    virtual ~MilpSolver() = default;
-    /// Precondition: the program has a column.
-    [[nodiscard]] virtual std::unique_ptr<MilpSession> load(const BinaryProgram& program) const = 0;
+/// A solver of binary programs, which never sees cones: loads a program, which has a column. `seed`: see
+/// SolveArguments.
+using MilpSolver =
+    std::function<std::unique_ptr<MilpSession>(const BinaryProgram& program, std::uint64_t seed)>;
+
+/// Makes an RLD solver of a MILP solver: build the program, solve it, add the rows that the answer violates
+/// ((5) and the pairing), and solve again until the answer is a lane graph.
+[[nodiscard]] std::unique_ptr<RldSolver> make_milp_rld_solver(MilpSolver solver, Formulation formulation);
+
+/// A MILP solver of this build.
+struct MilpBackend {
+    RldSolverEntry entry;
+    std::unique_ptr<MilpSession> (*load)(const BinaryProgram& program);
 };
+
+template <typename Session>
+std::unique_ptr<MilpSession> load_session(const BinaryProgram& program) {
+    return std::make_unique<Session>(program);
+}
+
+/// `Session(program)` loads a program. `entry`: all but what every backend has in common.
+template <typename Session>
+constexpr MilpBackend milp_backend(RldSolverEntry entry) {
+    entry.traits = entry.traits | SolverTrait::exact | SolverTrait::uses_formulation;
+    entry.make = [](Formulation formulation) {
+        return make_milp_rld_solver(
+            [](const BinaryProgram& program, std::uint64_t) { return load_session<Session>(program); },
+            formulation);
+    };
+    return {entry, load_session<Session>};
+}
+
+/// Each is defined, with its properties, in the .cpp file of its name.
+extern const MilpBackend kCbc;
+extern const MilpBackend kCbcMain;
+extern const MilpBackend kClpBb;
+extern const MilpBackend kGlpk;
+
+/// Those of this build, in the order of milp_solvers.
+[[nodiscard]] std::span<const MilpBackend> milp_backends();
 
 }  // namespace conelane

@@ -1,6 +1,7 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include "model/deadline.hpp"
+#include "solvers/core_entries.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
@@ -68,9 +69,8 @@ class PathPairSolver : public RldSolver {
   private:
     using Outcome = BranchAndBound::Outcome;
 
-    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
-             RldReport& report) override {
-        const Deadline deadline(limits.time_limit_ms);
+    void run(const LaneGraphProblem& problem, const SolveArguments& arguments, RldReport& report) override {
+        const Deadline deadline(arguments.limits.time_limit_ms);
         const Stopwatch build_watch;
         report.status = SolveStatus::stopped;
         SearchClock clock(deadline);
@@ -82,17 +82,18 @@ class PathPairSolver : public RldSolver {
         report.build_ms = build_watch.elapsed_ms();
         if (report.stopped_by) return;
         const Stopwatch solve_watch;
-        search(problem, limits, start, deadline, report);
+        search(problem, arguments, deadline, report);
         report.solve_ms = solve_watch.elapsed_ms();
     }
 
-    void search(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
-                const Deadline& deadline, RldReport& report) {
+    void search(const LaneGraphProblem& problem, const SolveArguments& arguments, const Deadline& deadline,
+                RldReport& report) {
         // Two lane graphs differ by less than this. A larger gap has the same effect.
         const double most = cost_limit(problem);
         const double tolerance =
-            std::max(std::min(limits.absolute_gap, most - graph_.share_bound()), kMinGap);
+            std::max(std::min(arguments.limits.absolute_gap, most - graph_.share_bound()), kMinGap);
         search_.reset_nodes();
+        const LaneGraph* const start = arguments.start;
         const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
         // Nearly every lane costs less than 0. Otherwise the scene is searched again, with a cutoff that
         // exceeds the cost of every lane by more than the tolerance.
@@ -263,7 +264,7 @@ BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time
 
 SearchCertificate certify_search(const LaneGraphProblem& problem, double time_limit_ms) {
     PathPairSolver solver({});
-    const RldReport report = solver.solve(problem, {.time_limit_ms = time_limit_ms}, nullptr);
+    const RldReport report = solver.solve(problem, {.limits = {time_limit_ms}});
     PathPairOptions options;
     options.complete_walks = false;
     options.search_frontiers = false;
@@ -273,5 +274,10 @@ SearchCertificate certify_search(const LaneGraphProblem& problem, double time_li
 std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options) {
     return std::make_unique<PathPairSolver>(options);
 }
+
+constexpr RldSolverEntry kPathPair{.name = "path-pair",
+                                   .description = "exact branch and bound over pairs of paths",
+                                   .traits = SolverTrait::exact,
+                                   .make = [](Formulation) { return make_path_pair_solver(); }};
 
 }  // namespace conelane

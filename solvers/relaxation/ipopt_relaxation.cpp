@@ -1,5 +1,3 @@
-#include "solvers/relaxation/ipopt_relaxation.hpp"
-
 #include "model/deadline.hpp"
 #include "solvers/detail/exclusive_section.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
@@ -161,8 +159,14 @@ std::optional<std::vector<double>> minimise(const LaneGraphProblem& problem, con
 
 }  // namespace
 
-std::unique_ptr<RldSolver> make_ipopt_relaxation_solver() {
-    return make_relaxation_solver(minimise);
-}
+/// A local minimum of EdgeRelaxation. One solve at a time in a process: Ipopt's linear solver MUMPS keeps
+/// global state; the time limit includes waiting for another solve. Ipopt checks the clock only between its
+/// iterations, so one iteration may overrun a limit, and so may its start-up, some milliseconds in the first
+/// solve of a process.
+constexpr RldSolverEntry kIpopt{.name = "ipopt",
+                                .description = "Ipopt on the relaxation with products, rounded; no proof",
+                                .traits = SolverTrait::refuses_huge_costs,
+                                .make = [](Formulation) { return make_relaxation_solver(minimise); },
+                                .library = "Ipopt " IPOPT_VERSION};
 
 }  // namespace conelane

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "conelane/core_solvers.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "conelane/rld_solver.hpp"
 #include "model/deadline.hpp"
 
 #include <functional>
@@ -16,8 +16,14 @@ namespace conelane {
 using Relax = std::function<std::optional<std::vector<double>>(
     const LaneGraphProblem& problem, const std::vector<double>& linear, const Deadline& deadline)>;
 
-/// Solves the linear relaxation, improves its values by `relax` and rounds them (see round_by_search). The
-/// bound is the linear relaxation's. Status feasible at best, infeasible if the linear relaxation is.
+/// Solves the linear relaxation, improves its values by `relax` and rounds them by a search among the edges
+/// that they favour. The bound is the linear relaxation's: a local minimum of a nonconvex problem is none.
+/// Status feasible at best, infeasible if the linear relaxation is.
 [[nodiscard]] std::unique_ptr<RldSolver> make_relaxation_solver(Relax relax);
+
+/// Entries of relaxation_solvers, each defined beside its solver.
+extern const RldSolverEntry kLpRounding;
+extern const RldSolverEntry kNlopt;
+extern const RldSolverEntry kIpopt;
 
 }  // namespace conelane

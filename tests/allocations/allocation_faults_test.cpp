@@ -146,13 +146,13 @@ TEST_P(SolverMemory, MayRunOutAnywhereInASolve) {
     const LaneGraphProblem problem = make_problem(tests::random_scene(kSeed, cones), {});
     const auto make = [] { return GetParam()->make(Formulation::tight); };
     const RldReport expected = make()->solve(problem, {});
-    if (GetParam()->exact) {
+    if (GetParam()->has(SolverTrait::exact)) {
         ASSERT_EQ(expected.status, SolveStatus::optimal);
     }
     const LaneGraph start = make_path_pair_solver()->solve(problem, {}).lane_graph.value();
     const std::int64_t count = [&] {
         const auto solver = make();
-        return count_allocations([&] { (void)solver->solve(problem, {}, &start); });
+        return count_allocations([&] { (void)solver->solve(problem, {.start = &start}); });
     }();
     int failures = 0;
     for (const std::int64_t place : places(count)) {
@@ -160,7 +160,7 @@ TEST_P(SolverMemory, MayRunOutAnywhereInASolve) {
         const std::int64_t living = allocations.living;
         {
             const auto solver = make();
-            if (runs_out([&] { (void)solver->solve(problem, {}, &start); }, place)) ++failures;
+            if (runs_out([&] { (void)solver->solve(problem, {.start = &start}); }, place)) ++failures;
             const RldReport report = solver->solve(problem, {});
             EXPECT_EQ(report.status, expected.status) << report.message;
             EXPECT_EQ(report.lane_graph, expected.lane_graph);

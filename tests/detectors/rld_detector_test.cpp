@@ -114,7 +114,7 @@ class Told : public RldSolver {
     explicit Told(std::vector<RldReport> reports) : reports_(std::move(reports)) {}
 
   private:
-    void run(const LaneGraphProblem&, const SolveLimits&, const LaneGraph*, RldReport& report) override {
+    void run(const LaneGraphProblem&, const SolveArguments&, RldReport& report) override {
         report = reports_.at(calls_++);
     }
     std::vector<RldReport> reports_;

@@ -1,5 +1,5 @@
 """tutorial_solver_sources.py ROOT FOLDER: what a reader of the tutorial has after adding its solver: its files, and
-solvers/CMakeLists.txt and solvers/core_solvers.cpp with its patch, all in FOLDER."""
+those of the list of solvers with its patch, all in FOLDER."""
 
 import os
 import re
@@ -10,7 +10,7 @@ import sys
 from tutorial_pages import text_of, tutorial_blocks
 
 ROOT, FOLDER = sys.argv[1:]
-PATCHED = ("solvers/CMakeLists.txt", "solvers/core_solvers.cpp")
+PATCHED = ("solvers/CMakeLists.txt", "solvers/core_entries.hpp", "solvers/core_solvers.cpp")
 
 
 def patch(text, *options):

@@ -49,7 +49,7 @@ void solve_on(FuzzedDataProvider& input) {
     limits.time_limit_ms = input.PickValueInArray(kLimits_ms);
     const RldParameters parameters = fuzzed_parameters(input);
     const Scene scene = fuzzed_scene(input, 40);
-    const SolvedScene solved = solve_scene(*path_pair, scene, parameters, limits);
+    const SolvedScene solved = solve_scene(*path_pair, scene, parameters, {.limits = limits});
     require_contract(scene, parameters, solved.report);
 
     // A start: its own answer, or edges from the bytes, possibly of cones that do not exist.
@@ -61,7 +61,8 @@ void solve_on(FuzzedDataProvider& input) {
                 {input.ConsumeIntegral<std::uint8_t>(), input.ConsumeIntegral<std::uint8_t>()});
         }
     }
-    const RldReport started = solve_scene(*path_pair, scene, parameters, limits, &start).report;
+    const RldReport started =
+        solve_scene(*path_pair, scene, parameters, {.limits = limits, .start = &start}).report;
     require_contract(scene, parameters, started);
     if (started.objective && solved.report.status == SolveStatus::optimal) {
         require(*started.objective >=

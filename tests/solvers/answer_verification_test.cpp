@@ -4,7 +4,7 @@
 
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_solver.hpp"
-#include "solvers/exhaustive.hpp"
+#include "solvers/core_entries.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
@@ -96,9 +96,7 @@ class Liar : public RldSolver {
     explicit Liar(RldReport report) : report_(std::move(report)) {}
 
   private:
-    void run(const LaneGraphProblem&, const SolveLimits&, const LaneGraph*, RldReport& report) override {
-        report = report_;
-    }
+    void run(const LaneGraphProblem&, const SolveArguments&, RldReport& report) override { report = report_; }
     RldReport report_;
 };
 
@@ -113,7 +111,7 @@ RldReport optimum() {
 RldReport told(const std::function<void(RldReport&)>& falsify, const LaneGraph* start = nullptr) {
     RldReport report = optimum();
     falsify(report);
-    return Liar(report).solve(make_problem(tests::six_cone_lane(), {}), {}, start);
+    return Liar(report).solve(make_problem(tests::six_cone_lane(), {}), {.start = start});
 }
 
 TEST(VerifiedSolver, PassesTrueClaims) {
@@ -198,12 +196,13 @@ TEST(VerifiedSolver, NoStartChangesAnOptimum) {
             }
             for (const tests::SolverCase& tried : tests::solver_cases()) {
                 // The printed program takes a hundred times as long, in the same code.
-                if (!tried.entry->exact || tried.formulation == Formulation::paper) continue;
+                if (!tried.entry->has(SolverTrait::exact) || tried.formulation == Formulation::paper)
+                    continue;
                 SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << tried.entry->name);
                 const auto solver = tried.entry->make(tried.formulation);
                 const LaneGraphProblem problem = make_problem(scene, parameters, solver->extent());
                 for (const LaneGraph& start : starts) {
-                    (void)tests::agrees(solver->solve(problem, {}, &start), best);
+                    (void)tests::agrees(solver->solve(problem, {.start = &start}), best);
                 }
             }
         }

@@ -4,7 +4,7 @@
 #include "conelane/check.hpp"
 #include "model/geometry.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/milp/cbc_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/testing.hpp"
@@ -21,7 +21,7 @@ LaneGraphProblem paper_problem(const Scene& scene, const RldParameters& paramete
 
 /// Solves a program without the rows that are added on demand.
 MilpReport solve(const BinaryProgram& program) {
-    return make_cbc_solver()->load(program)->solve({});
+    return kCbc.load(program)->solve({});
 }
 
 RldReport solve_corrected(const LaneGraphProblem& problem) {
@@ -180,7 +180,7 @@ TEST(Errata, Equation12AsPrintedForbidsNearInnerCones) {
         row.upper = kInfinity;
     }
     ASSERT_EQ(solve(without).status, SolveStatus::optimal);
-    const auto session = make_cbc_solver()->load(without);
+    const auto session = kCbc.load(without);
     session->add_rows(printed);
     EXPECT_EQ(session->solve({}).status, SolveStatus::infeasible);
 }

@@ -7,7 +7,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "model/learned_features.hpp"
-#include "solvers/exhaustive.hpp"
+#include "solvers/core_entries.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"

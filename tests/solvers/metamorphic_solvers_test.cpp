@@ -114,11 +114,11 @@ TEST_P(SolverMetamorphic, FindsTheSameOptimum) {
         const Scene scene = tests::on_grid(tests::random_scene(seed, 8));
         const Solved original = solve(*solver, scene, parameters_of(seed));
         const Solved changed = solve(*solver, change.apply(scene), parameters_of(seed));
-        expect_same(original, changed, change, tried.entry->exact);
+        expect_same(original, changed, change, tried.entry->has(SolverTrait::exact));
         if (original.report.lane_graph) ++lanes;
     }
     // The number of lanes that a heuristic finds is not compared.
-    if (tried.entry->exact) {
+    if (tried.entry->has(SolverTrait::exact)) {
         EXPECT_GE(lanes, seeds / 4);
     }
 }
@@ -136,7 +136,7 @@ TEST_P(SolverScale, FindsTheSameOptimumWithTheLengthsOfTheParameters) {
             const Solved original = solve(*solver, scene, parameters_of(seed));
             const Solved changed =
                 solve(*solver, change.apply(scene), with_lengths_scaled(parameters_of(seed), factor));
-            expect_same(original, changed, change, GetParam().entry->exact);
+            expect_same(original, changed, change, GetParam().entry->has(SolverTrait::exact));
         }
     }
 }

@@ -142,7 +142,8 @@ TEST(Relaxations, StopAtTheTimeLimit) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(1, 16), {});
         SolveLimits limits;
         limits.time_limit_ms = 0.0;
-        EXPECT_EQ(entry.make(Formulation::tight)->solve(problem, limits).status, SolveStatus::stopped)
+        EXPECT_EQ(entry.make(Formulation::tight)->solve(problem, {.limits = limits}).status,
+                  SolveStatus::stopped)
             << entry.name;
     }
 }

@@ -5,7 +5,7 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/exhaustive.hpp"
+#include "solvers/core_entries.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"

@@ -2,7 +2,7 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/exhaustive.hpp"
+#include "solvers/core_entries.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
@@ -22,7 +22,7 @@ using tests::SolverCase;
 /// The solvers that prove their optimum. Requirements of all solvers are in solver_robustness_test.
 std::vector<SolverCase> exact_solver_cases() {
     std::vector<SolverCase> all = tests::solver_cases();
-    std::erase_if(all, [](const SolverCase& solver) { return !solver.entry->exact; });
+    std::erase_if(all, [](const SolverCase& solver) { return !solver.entry->has(SolverTrait::exact); });
     return all;
 }
 
@@ -32,7 +32,8 @@ class SolverContract : public testing::TestWithParam<SolverCase> {
     RldReport solve(const Scene& scene, const RldParameters& parameters = {}, const SolveLimits& limits = {},
                     const LaneGraph* start = nullptr) {
         const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
-        return solver->solve(make_problem(scene, parameters, solver->extent()), limits, start);
+        return solver->solve(make_problem(scene, parameters, solver->extent()),
+                             {.limits = limits, .start = start});
     }
 };
 
@@ -187,7 +188,8 @@ TEST_P(SolverContract, EquallyGoodLanesTie) {
 /// With however little time, a claim is true: no wrong optimum, a valid bound, a lane graph that is
 /// one.
 TEST_P(SolverContract, ATimeLimitNeverMakesAClaimWrong) {
-    const std::size_t cones = GetParam().entry->uses_formulation ? 14 : kExhaustiveMostCones;
+    const std::size_t cones =
+        GetParam().entry->has(SolverTrait::uses_formulation) ? 14 : kExhaustiveMostCones;
     const auto reference_solver = find_rld_solver("cbc")->make(Formulation::tight);
     int stopped = 0;
     for (std::uint64_t seed = 0; seed < 6; ++seed) {

@@ -6,8 +6,10 @@
 #include "solvers/milp/detail/own_process.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/solver_cases.hpp"
 #include "tests/support/testing.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <new>
@@ -23,11 +25,10 @@ constexpr unsigned kMaxDuration_s = 60;
 
 /// Solves repeatedly; SIGINT comes from another thread meanwhile. Relaxations of the printed rows with 40
 /// cones take seconds, so nearly all of the time is spent inside Clp.
-[[noreturn]] void be_interrupted_in(const char* name, Formulation formulation, std::size_t cones) {
+[[noreturn]] void be_interrupted_in(const tests::SolverCase& tested) {
     alarm(kMaxDuration_s);  // if SIGINT has no effect, this ends the process
-    const std::unique_ptr<RldSolver> solver = find_rld_solver(name)->make(formulation);
-    const LaneGraphProblem problem =
-        make_problem(tests::random_scene(1, cones), {}, parts(formulation).extent);
+    const std::unique_ptr<RldSolver> solver = tested.entry->make(tested.formulation);
+    const LaneGraphProblem problem = make_problem(tests::random_scene(1, 40), {}, solver->extent());
     const std::jthread interrupter([] {
         std::this_thread::sleep_for(std::chrono::milliseconds(300));
         kill(getpid(), SIGINT);
@@ -35,13 +36,13 @@ constexpr unsigned kMaxDuration_s = 60;
     while (true) (void)solver->solve(problem, {});
 }
 
-class Interrupt : public testing::TestWithParam<const char*> {
+class Interrupt : public testing::TestWithParam<tests::SolverCase> {
   protected:
     void SetUp() override { testing::FLAGS_gtest_death_test_style = "threadsafe"; }
 };
 
 TEST_P(Interrupt, EndsAProgramThatHasNoHandler) {
-    EXPECT_EXIT(be_interrupted_in(GetParam(), Formulation::paper, 40), testing::KilledBySignal(SIGINT), "");
+    EXPECT_EXIT(be_interrupted_in(GetParam()), testing::KilledBySignal(SIGINT), "");
 }
 
 volatile std::sig_atomic_t interrupts = 0;
@@ -50,7 +51,7 @@ volatile std::sig_atomic_t interrupts = 0;
 TEST_P(Interrupt, IsSeenByTheProgramsHandler) {
     const auto before = std::signal(SIGINT, [](int) { interrupts = interrupts + 1; });
     interrupts = 0;
-    const std::unique_ptr<RldSolver> solver = find_rld_solver(GetParam())->make(Formulation::paper);
+    const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
     const LaneGraphProblem problem = make_problem(tests::random_scene(1, 30), {}, EdgeExtent::all_pairs);
     const auto interrupt_after = [](int wait_ms) {
         return std::jthread([wait_ms] {
@@ -61,16 +62,25 @@ TEST_P(Interrupt, IsSeenByTheProgramsHandler) {
     {
         const std::jthread first = interrupt_after(100);
         const std::jthread second = interrupt_after(200);
-        const RldReport report = solver->solve(problem, {400.0});
+        const RldReport report = solver->solve(problem, {.limits = {400.0}});
         EXPECT_NE(report.status, SolveStatus::error) << report.message;
     }
     EXPECT_EQ(interrupts, 2);
     std::signal(SIGINT, before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cbc, Interrupt, testing::Values("cbc", "cbc-main"), [](const auto& test) {
-    return std::string(test.param) == "cbc" ? "cbc" : "cbc_main";
-});
+std::vector<tests::SolverCase> solvers_of_printed_rows() {
+    std::vector<tests::SolverCase> all = tests::solver_cases();
+    std::erase_if(all, [](const tests::SolverCase& c) { return c.formulation != Formulation::paper; });
+    return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(PrintedRows, Interrupt, testing::ValuesIn(solvers_of_printed_rows()),
+                         [](const auto& test) {
+                             std::string name(test.param.entry->name);
+                             std::ranges::replace(name, '-', '_');
+                             return name;
+                         });
 
 /// What a library does to its process is an error of the solve.
 TEST(OwnProcess, ReportsHowItEnded) {

@@ -4,7 +4,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "model/deadline.hpp"
-#include "solvers/milp/milp_rld_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
@@ -38,7 +38,7 @@ class SolverRobustness : public testing::TestWithParam<SolverCase> {
     /// The report is right without a limit: there is no lane. A heuristic need not prove it.
     static void expect_no_lane(const RldReport& report) {
         EXPECT_TRUE(report.status == SolveStatus::infeasible ||
-                    (!GetParam().entry->exact && report.status == SolveStatus::stopped))
+                    (!GetParam().entry->has(SolverTrait::exact) && report.status == SolveStatus::stopped))
             << testing::PrintToString(report.status) << ": " << report.message;
         EXPECT_FALSE(report.stopped_by.has_value());
         EXPECT_FALSE(report.lane_graph.has_value());
@@ -85,7 +85,7 @@ TEST_P(SolverRobustness, ADeadlineAnywhereInTheSolveMakesNoFalseProof) {
         for (int k = 0; k < kLimits; ++k) {
             const double limit_ms = 1.1 * whole_ms * k / kLimits;
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", limit " << limit_ms << " ms");
-            const RldReport report = solver->solve(problem, {limit_ms});
+            const RldReport report = solver->solve(problem, {.limits = {limit_ms}});
             if (unlimited.status == SolveStatus::error && report.status == SolveStatus::error) continue;
             expect_true(report, problem, reference);
             if (report.stopped_by) ++stopped;
@@ -96,7 +96,7 @@ TEST_P(SolverRobustness, ADeadlineAnywhereInTheSolveMakesNoFalseProof) {
 
 TEST_P(SolverRobustness, ALimitThatHasPassedStopsAtOnce) {
     for (const double limit_ms : {0.0, -1.0, -1e300, -std::numeric_limits<double>::infinity()}) {
-        const RldReport report = solver->solve(problem_of(four_cones()), {limit_ms});
+        const RldReport report = solver->solve(problem_of(four_cones()), {.limits = {limit_ms}});
         EXPECT_EQ(report.status, SolveStatus::stopped) << limit_ms;
         EXPECT_EQ(report.stopped_by, StopReason::time);
         EXPECT_FALSE(report.bound && *report.bound > -2.0 + 1e-6);
@@ -107,14 +107,14 @@ TEST_P(SolverRobustness, ALimitThatHasPassedStopsAtOnce) {
 /// answer of a heuristic must be the one without a limit.
 TEST_P(SolverRobustness, AHugeFiniteLimitIsNoLimit) {
     const RldReport unlimited = solver->solve(problem_of(four_cones()), {});
-    if (GetParam().entry->exact) {
+    if (GetParam().entry->has(SolverTrait::exact)) {
         ASSERT_EQ(unlimited.status, SolveStatus::optimal) << unlimited.message;
     } else {
         ASSERT_THAT(unlimited.status, testing::AnyOf(SolveStatus::feasible, SolveStatus::stopped))
             << unlimited.message;
     }
     for (const double limit_ms : {1e9, 1e13, 1e19, 1e300, std::numeric_limits<double>::max()}) {
-        const RldReport report = solver->solve(problem_of(four_cones()), {limit_ms});
+        const RldReport report = solver->solve(problem_of(four_cones()), {.limits = {limit_ms}});
         EXPECT_FALSE(report.stopped_by.has_value()) << limit_ms;
         EXPECT_EQ(report.status, unlimited.status) << limit_ms << ": " << report.message;
         EXPECT_EQ(report.lane_graph, unlimited.lane_graph) << limit_ms;
@@ -124,7 +124,7 @@ TEST_P(SolverRobustness, AHugeFiniteLimitIsNoLimit) {
 TEST_P(SolverRobustness, NoNumberAsALimitIsAnError) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     for (const SolveLimits& limits : {SolveLimits{kNaN}, SolveLimits{10.0, kNaN}, SolveLimits{10.0, -1.0}}) {
-        const RldReport report = solver->solve(problem_of(four_cones()), limits);
+        const RldReport report = solver->solve(problem_of(four_cones()), {.limits = limits});
         EXPECT_EQ(report.status, SolveStatus::error);
         EXPECT_FALSE(report.message.empty());
         EXPECT_FALSE(report.lane_graph.has_value());
@@ -162,7 +162,8 @@ TEST_P(SolverRobustness, ACostBeyondWhatABackendTakesIsAnErrorOrHasNoEffect) {
 
 /// The solver finds nothing better than the start before the limit, so the start is the answer.
 TEST_P(SolverRobustness, AStartOutlivesTheLimit) {
-    const RldReport report = solver->solve(problem_of(four_cones()), {0.0}, &kFourConesLane);
+    const RldReport report =
+        solver->solve(problem_of(four_cones()), {.limits = {0.0}, .start = &kFourConesLane});
     EXPECT_EQ(report.status, SolveStatus::feasible) << report.message;
     EXPECT_EQ(report.stopped_by, StopReason::time);
     EXPECT_EQ(report.lane_graph, kFourConesLane);
@@ -202,12 +203,12 @@ INSTANTIATE_TEST_SUITE_P(Registry, SolverRobustness, testing::ValuesIn(solver_ca
                          [](const auto& test) { return case_name(test.param); });
 
 /// A backend that fails in one of several ways.
-class FailingMilpSolver : public MilpSolver {
+class FailingMilpSolver {
   public:
     enum class Way { load_throws, throws, throws_no_std_exception, reports, gives_a_wrong_point };
     explicit FailingMilpSolver(Way way) : way_(way) {}
 
-    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
+    std::unique_ptr<MilpSession> operator()(const BinaryProgram& program, std::uint64_t /*seed*/) const {
         if (way_ == Way::load_throws) throw std::runtime_error("no memory for the rows");
         return std::make_unique<Session>(way_, program.columns.size());
     }
@@ -241,15 +242,14 @@ TEST(FailingBackend, IsAnErrorWithAMessageThatKeepsAFeasibleStart) {
     for (const Way way : {Way::load_throws, Way::throws, Way::throws_no_std_exception, Way::reports,
                           Way::gives_a_wrong_point}) {
         SCOPED_TRACE(static_cast<int>(way));
-        const auto solver =
-            make_milp_rld_solver(std::make_unique<FailingMilpSolver>(way), Formulation::tight);
+        const auto solver = make_milp_rld_solver(FailingMilpSolver(way), Formulation::tight);
         const RldReport alone = solver->solve(problem, {});
         EXPECT_EQ(alone.status, SolveStatus::error);
         EXPECT_FALSE(alone.message.empty());
         EXPECT_FALSE(alone.lane_graph.has_value());
         const LaneGraph infeasible{{{0, 2}, {1, 3}}};
-        EXPECT_FALSE(solver->solve(problem, {}, &infeasible).lane_graph.has_value());
-        const RldReport started = solver->solve(problem, {}, &kFourConesLane);
+        EXPECT_FALSE(solver->solve(problem, {.start = &infeasible}).lane_graph.has_value());
+        const RldReport started = solver->solve(problem, {.start = &kFourConesLane});
         EXPECT_EQ(started.status, SolveStatus::error);
         EXPECT_FALSE(started.message.empty());
         EXPECT_EQ(started.lane_graph, kFourConesLane);
@@ -263,7 +263,7 @@ TEST(FailingBackend, ARelaxationThatThrowsIsAnErrorToo) {
         make_relaxation_solver([](const LaneGraphProblem&, const std::vector<double>&,
                                   const Deadline&) -> std::optional<std::vector<double>> { throw 7; });
     EXPECT_EQ(solver->solve(problem, {}).status, SolveStatus::error);
-    EXPECT_EQ(solver->solve(problem, {}, &kFourConesLane).lane_graph, kFourConesLane);
+    EXPECT_EQ(solver->solve(problem, {.start = &kFourConesLane}).lane_graph, kFourConesLane);
 }
 
 TEST(FailingBackend, OutOfMemoryIsPassedOn) {

@@ -25,7 +25,7 @@ inline std::vector<SolverCase> solver_cases() {
     std::vector<SolverCase> all;
     for (const RldSolverEntry& entry : rld_solvers()) {
         all.push_back({&entry, Formulation::tight});
-        if (entry.uses_formulation) all.push_back({&entry, Formulation::paper});
+        if (entry.has(SolverTrait::uses_formulation)) all.push_back({&entry, Formulation::paper});
     }
     return all;
 }

@@ -1,7 +1,7 @@
 // Solvers of the core in several threads at once, one instance each.
 
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/exhaustive.hpp"
+#include "solvers/core_entries.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"

@@ -18,6 +18,6 @@ struct SolvedScene {
 /// problem cannot be made in time, or would be too large, the status is stopped, with the reason. Throws only
 /// std::bad_alloc: an invalid scene or invalid parameters give status error and a message.
 [[nodiscard]] SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                                      const SolveLimits& limits, const LaneGraph* start = nullptr);
+                                      const SolveArguments& arguments);
 
 }  // namespace conelane

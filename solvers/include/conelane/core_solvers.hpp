@@ -1,10 +1,42 @@
 #pragma once
 
-#include "conelane/solver_entry.hpp"
+#include "conelane/formulation.hpp"
+#include "conelane/rld_solver.hpp"
 
+#include <cstddef>
+#include <memory>
+#include <optional>
 #include <span>
+#include <string_view>
 
 namespace conelane {
+
+/// What a solver does that others do not, joined by |.
+enum class SolverTrait : unsigned {
+    none = 0,
+    exact = 1U << 0U,  ///< proves its optimum; others are heuristics, whose best status is feasible
+    uses_formulation = 1U << 1U,    ///< others ignore the formulation
+    suits_paper = 1U << 2U,         ///< solves Formulation::paper of 12 cones at once; others take seconds
+    reads_time_of_day = 1U << 3U,   ///< a clock that is set during a solve changes its time limit
+    refuses_huge_costs = 1U << 4U,  ///< costs of 1e25 and more give status error and a message
+};
+[[nodiscard]] constexpr SolverTrait operator|(SolverTrait a, SolverTrait b) {
+    return SolverTrait{static_cast<unsigned>(a) | static_cast<unsigned>(b)};
+}
+
+/// A solver by its name. Each stands beside its solver, in the .cpp file.
+struct RldSolverEntry {
+    std::string_view name;
+    std::string_view description;
+    SolverTrait traits = SolverTrait::none;
+    std::unique_ptr<RldSolver> (*make)(Formulation formulation) = nullptr;
+    std::optional<std::size_t> max_cones{};  ///< larger cone sets give status error; absent: no limit
+    std::string_view library{};              ///< what searches, with its version; empty: conelane itself
+
+    [[nodiscard]] constexpr bool has(SolverTrait trait) const {
+        return (static_cast<unsigned>(traits) & static_cast<unsigned>(trait)) != 0;
+    }
+};
 
 /// The solvers of the core, which need no other library.
 [[nodiscard]] std::span<const RldSolverEntry> core_solvers();

@@ -18,21 +18,15 @@ class RldSolver {
     /// kMaxProgramEntries) gives status stopped by memory. Invalid limits (see `invalidity`) and a failing
     /// backend give status error and a message.
     ///
-    /// `start`, or nullptr, is a lane graph that solvers may use as their first incumbent. An infeasible
-    /// start is dropped. A feasible start is in the report unless a cheaper lane graph is, also if status is
-    /// error.
-    ///
     /// Every answer is verified against the problem (model/answer_verification.hpp). Status error and a
     /// message follow from a broken constraint, a wrong objective, a bound above a known lane graph, and an
     /// optimum or infeasibility that the start refutes. Throws only std::bad_alloc.
-    [[nodiscard]] RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                                  const LaneGraph* start = nullptr);
+    [[nodiscard]] RldReport solve(const LaneGraphProblem& problem, const SolveArguments& arguments);
 
   protected:
     /// The search: fills an empty report, whose status is error. Any exception but std::bad_alloc becomes
     /// status error. Precondition: the limits are valid.
-    virtual void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
-                     RldReport& report) = 0;
+    virtual void run(const LaneGraphProblem& problem, const SolveArguments& arguments, RldReport& report) = 0;
 };
 
 }  // namespace conelane

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace conelane {
 
@@ -24,8 +23,7 @@ enum class SolveStatus {
 
 /// Limits of every solver; each runs on one thread, without a relative gap. Every backend keeps its own
 /// deadline and, with it, the incumbent. A MILP solver knows objectives to the tolerance of its LP, about
-/// 1e-7, for any gap: CBC looks for points that are better by at least 1e-7, GLPK by 1e-9 of the objective;
-/// clp-bb uses the gap unchanged.
+/// 1e-7, for any gap.
 struct SolveLimits {
     /// Wall clock, from the call; infinity for no limit. At 0 and below nothing is tried.
     double time_limit_ms = std::numeric_limits<double>::infinity();
@@ -34,14 +32,14 @@ struct SolveLimits {
 /// What is wrong with the limits, in words; empty if they are valid. NaN is invalid.
 [[nodiscard]] std::string_view invalidity(const SolveLimits& limits);
 
-/// What a MILP solver answers. Absent values are unknown.
-struct MilpReport {
-    SolveStatus status = SolveStatus::error;
-    std::optional<StopReason> stopped_by;
-    std::vector<double> point;    ///< the incumbent by column; empty without an incumbent
-    std::optional<double> bound;  ///< proven lower bound of the objective
-    std::int64_t nodes = 0;       ///< branch-and-bound nodes; 0 if the first relaxation was integral
-    std::string message;
+/// What a solve takes beside the problem.
+struct SolveArguments {
+    SolveLimits limits = {};
+    /// A lane graph that solvers may use as their first incumbent, or nullptr. An infeasible start is
+    /// dropped. A feasible start is in the report unless a cheaper lane graph is, also if status is error.
+    const LaneGraph* start = nullptr;
+    /// Draws another order of the search where a solver can, as programs from outside; 0 for its own order.
+    std::uint64_t seed = 0;
 };
 
 /// What an RLD solver answers.

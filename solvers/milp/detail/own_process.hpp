@@ -1,6 +1,6 @@
 #pragma once
 
-#include "conelane/solve_report.hpp"
+#include "solvers/milp/milp_solver.hpp"
 
 #include <functional>
 

@@ -5,7 +5,7 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/program_solution.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/milp/cbc_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/testing.hpp"
@@ -281,7 +281,7 @@ TEST_P(RoundTrips, OtherProgramsFindTheSameOptimum) {
             const Scene scene = tests::random_scene(seed, 7);
             const LaneGraphProblem problem = make_problem(scene, {}, parts(formulation).extent);
             const LaneGraphModel model(problem, formulation);
-            const MilpReport ours = make_cbc_solver()->load(model.program())->solve({});
+            const MilpReport ours = kCbc.load(model.program())->solve({});
             {
                 std::ofstream out(file);
                 GetParam().ending == "mps" ? write_mps(out, model.program(), "round_trip")

@@ -7,7 +7,7 @@
 #include "evaluation/outside/connecting_flow.hpp"
 #include "evaluation/outside/permuted_program.hpp"
 #include "model/deadline.hpp"
-#include "solvers/milp/cbc_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -115,14 +115,14 @@ TEST(ConnectingFlow, MakesAProgramWhole) {
                 const LaneGraphModel model(problem, formulation);
                 BinaryProgram whole = model.program();
                 add_connecting_flow(whole, problem);
-                const MilpReport report = make_cbc_solver()->load(whole)->solve({});
+                const MilpReport report = kCbc.load(whole)->solve({});
                 const std::optional<double> optimum = exact(problem);
                 ASSERT_EQ(report.status == SolveStatus::optimal, optimum.has_value());
                 if (!optimum) continue;
                 ++feasible;
                 EXPECT_NEAR(*report.bound, *optimum, kSame);
                 EXPECT_TRUE(is_feasible(problem, model.decode(report.point)));
-                const MilpReport part = make_cbc_solver()->load(model.program())->solve({});
+                const MilpReport part = kCbc.load(model.program())->solve({});
                 if (*part.bound < *optimum - kSame) ++cut_off;
             }
         }
@@ -147,8 +147,8 @@ TEST(PermutedProgram, IsTheSameProgramInAnotherOrder) {
     EXPECT_THAT(names(other.program.rows), testing::UnorderedElementsAreArray(names(program.rows)));
     EXPECT_EQ(names(permuted(program, 5).program.columns), names(other.program.columns));
     EXPECT_NE(names(permuted(program, 6).program.columns), names(other.program.columns));
-    const MilpReport first = make_cbc_solver()->load(program)->solve({});
-    const MilpReport second = make_cbc_solver()->load(other.program)->solve({});
+    const MilpReport first = kCbc.load(program)->solve({});
+    const MilpReport second = kCbc.load(other.program)->solve({});
     EXPECT_NEAR(*first.bound, *second.bound, kSame);
     EXPECT_TRUE(is_feasible(problem, model.decode(other.point_of(second.point))));
     EXPECT_TRUE(other.point_of({}).empty());
@@ -169,13 +169,13 @@ TEST_P(RightAnswers, AreOptima) {
         int feasible = 0;
         for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
             OutsideSolver solver(detector(child(GetParam().arguments)), {formulation, GetParam().all_rows});
-            solver.set_seed(GetParam().seed);
             for (std::uint64_t seed = 0; seed < 16; ++seed) {
                 SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << to_string(formulation));
                 const LaneGraphProblem problem =
                     problem_of(tests::random_scene(seed, 8), formulation, Pairing::near_far);
                 const std::optional<double> optimum = exact(problem);
-                const RldReport report = solver.solve(problem, {.time_limit_ms = 20000.0});
+                const RldReport report =
+                    solver.solve(problem, {.limits = {.time_limit_ms = 20000.0}, .seed = GetParam().seed});
                 expect_optimum(report, optimum);
                 if (!optimum) continue;
                 ++feasible;
@@ -183,7 +183,8 @@ TEST_P(RightAnswers, AreOptima) {
                 EXPECT_NEAR(solver.engine_ms().value(), 0.5 * report.rounds, 1e-9);
                 EXPECT_EQ(report.nodes, 3 * report.rounds);
                 // The start is the optimum, so nothing better is found.
-                expect_optimum(solver.solve(problem, {}, &*report.lane_graph), optimum);
+                expect_optimum(solver.solve(problem, {.start = &*report.lane_graph, .seed = GetParam().seed}),
+                               optimum);
             }
             solver.end();
             EXPECT_GT(solver.peak_bytes(), std::size_t{1} << 20U);
@@ -217,15 +218,15 @@ TEST_P(Faults, AreErrorsAndTheNextAnswerIsRight) {
     const std::optional<double> optimum = exact(problem_);
     OutsideSolver solver(detector(child(std::string(GetParam().name) + " 2 " + path("done").string())),
                          {.patience = kShort});
-    expect_optimum(solver.solve(problem_, limits_), optimum);
+    expect_optimum(solver.solve(problem_, {.limits = limits_}), optimum);
     const Stopwatch watch;
-    const RldReport report = solver.solve(problem_, limits_);
+    const RldReport report = solver.solve(problem_, {.limits = limits_});
     EXPECT_LT(watch.elapsed_ms(), limits_.time_limit_ms + kShort.late_ms + 1000.0);
     EXPECT_EQ(report.status, SolveStatus::error);
     EXPECT_FALSE(report.lane_graph);
     EXPECT_FALSE(report.bound);
     EXPECT_THAT(report.message, HasSubstr(GetParam().message));
-    expect_optimum(solver.solve(problem_, limits_), optimum);
+    expect_optimum(solver.solve(problem_, {.limits = limits_}), optimum);
 }
 
 TEST_P(Faults, OfAProgramThatIsRunOnceToo) {
@@ -234,10 +235,10 @@ TEST_P(Faults, OfAProgramThatIsRunOnceToo) {
     OutsideSolver solver(
         detector(child("once {mps} {sol} " + std::string(GetParam().name) + " " + path("done").string())),
         {.patience = kShort});
-    const RldReport report = solver.solve(problem_, limits_);
+    const RldReport report = solver.solve(problem_, {.limits = limits_});
     EXPECT_EQ(report.status, SolveStatus::error);
     EXPECT_NE(report.message, "");
-    expect_optimum(solver.solve(problem_, limits_), optimum);
+    expect_optimum(solver.solve(problem_, {.limits = limits_}), optimum);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -268,7 +269,7 @@ TEST_F(Claims, InfeasibilityIsRefutedByAStart) {
     const LaneGraph lane = *make_path_pair_solver()->solve(problem_, {}).lane_graph;
     // With a cutoff, the claim that nothing is below it is true of an optimum.
     OutsideSolver conversation(detector(child("claims-none 1 always")), {});
-    EXPECT_EQ(conversation.solve(problem_, {}, &lane).status, SolveStatus::optimal);
+    EXPECT_EQ(conversation.solve(problem_, {.start = &lane}).status, SolveStatus::optimal);
     OutsideSolver alone(detector(child("claims-none 1 always")), {});
     EXPECT_EQ(alone.solve(problem_, {}).status, SolveStatus::infeasible);
 }
@@ -292,7 +293,7 @@ TEST_F(Claims, APointWithoutAStatusIsALaneGraphOnly) {
 TEST_F(Claims, OneThatFailsAgainAndAgainIsLeftAlone) {
     OutsideSolver solver(detector("echo x >>" + path("starts").string() + "; exit 7"), {.patience = kShort});
     RldReport report;
-    for (int i = 0; i < 8; ++i) report = solver.solve(problem_, {.time_limit_ms = 500.0});
+    for (int i = 0; i < 8; ++i) report = solver.solve(problem_, {.limits = {.time_limit_ms = 500.0}});
     EXPECT_THAT(report.message, AllOf(HasSubstr("not asked"), HasSubstr("exit code 7")));
     EXPECT_EQ(text_of(path("starts")), "x\nx\nx\nx\n");
 }
@@ -300,7 +301,7 @@ TEST_F(Claims, OneThatFailsAgainAndAgainIsLeftAlone) {
 TEST_F(Claims, AStartIsKeptWhateverHappens) {
     const LaneGraph lane = *make_path_pair_solver()->solve(problem_, {}).lane_graph;
     OutsideSolver solver(detector("exit 7"), {.patience = kShort});
-    const RldReport report = solver.solve(problem_, {.time_limit_ms = 500.0}, &lane);
+    const RldReport report = solver.solve(problem_, {.limits = {.time_limit_ms = 500.0}, .start = &lane});
     EXPECT_EQ(report.status, SolveStatus::error);
     EXPECT_TRUE(report.lane_graph);
     EXPECT_FALSE(report.bound);
@@ -309,8 +310,8 @@ TEST_F(Claims, AStartIsKeptWhateverHappens) {
 /// The program gets its limits and the requested options.
 TEST_F(Claims, TheQuestionNamesLimitGapThreadsAndSeed) {
     OutsideSolver solver(detector("SOLVER_LOG=" + path("log").string() + " " + child()), {.threads = 3});
-    solver.set_seed(41);
-    EXPECT_EQ(solver.solve(problem_, {.time_limit_ms = 5000.0, .absolute_gap = 1e-7}).status,
+    EXPECT_EQ(solver.solve(problem_, {.limits = {.time_limit_ms = 5000.0, .absolute_gap = 1e-7}, .seed = 41})
+                  .status,
               SolveStatus::optimal);
     solver.end();
     EXPECT_THAT(text_of(path("log")), AllOf(HasSubstr(R"("time_limit_ms":49)"), HasSubstr(R"("threads":3)"),
@@ -318,7 +319,7 @@ TEST_F(Claims, TheQuestionNamesLimitGapThreadsAndSeed) {
     OutsideSolver once(detector("echo {limit_s} {limit_whole_s} {gap} {threads} {seed} {cutoff} >" +
                                 path("told").string() + "; " + child("once {mps} {sol}")),
                        {});
-    EXPECT_EQ(once.solve(problem_, {.absolute_gap = 1e-7}).status, SolveStatus::optimal);
+    EXPECT_EQ(once.solve(problem_, {.limits = {.absolute_gap = 1e-7}}).status, SolveStatus::optimal);
     EXPECT_EQ(text_of(path("told")), "1000000.000 1000000 1e-07 1 0 1e+300\n");
 }
 

@@ -7,7 +7,7 @@
 // creates. The marker "always" never exists. It writes its input to the file named by SOLVER_LOG.
 
 #include "model/binary_program.hpp"
-#include "solvers/milp/cbc_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "tests/evaluation/outside/process_faults.hpp"
 
 #include <cstdlib>
@@ -145,7 +145,7 @@ std::string fault_for(const std::string& fault, const std::string& marker) {
 
 Solved solve(const std::string& file) {
     NamedProgram read = read_mps(file);
-    MilpReport report = conelane::make_cbc_solver()->load(read.program)->solve({});
+    MilpReport report = conelane::kCbc.load(read.program)->solve({});
     return {std::move(report), std::move(read)};
 }
 

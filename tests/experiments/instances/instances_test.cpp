@@ -2,7 +2,7 @@
 
 #include "conelane/solve_scene.hpp"
 #include "experiments/instances/instance_library.hpp"
-#include "solvers/milp/clp_bb_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/slowness.hpp"
@@ -112,7 +112,7 @@ TEST_F(Instances, NoBoundOfAHardSceneIsAboveTheBestKnownLaneGraph) {
         SCOPED_TRACE(set.name);
         EXPECT_EQ(known->second.mark, "=best=");
         const RldReport report =
-            solve_scene(*solver, set.scene, RldParameters{}, {50.0 * tests::kSlowness}).report;
+            solve_scene(*solver, set.scene, RldParameters{}, {.limits = {50.0 * tests::kSlowness}}).report;
         ASSERT_NE(report.status, SolveStatus::error) << report.message;
         ASSERT_NE(report.status, SolveStatus::infeasible);
         EXPECT_LE(report.bound.value(), known->second.value + kSameObjective);
@@ -128,10 +128,10 @@ TEST_F(Instances, EverySolverFindsTheStoredOptima) {
     for (const InstanceScene& set : instance_scenes(options)) {
         for (const tests::SolverCase& solver_case : tests::solver_cases()) {
             const RldSolverEntry& entry = *solver_case.entry;
-            if (!entry.exact || entry.max_cones.value_or(12) < 12) continue;
+            if (!entry.has(SolverTrait::exact) || entry.max_cones.value_or(12) < 12) continue;
             SCOPED_TRACE(set.name + " " + std::string(entry.name));
-            // The printed program takes seconds without CBC's full machinery.
-            if (solver_case.formulation == Formulation::paper && entry.name != "cbc-main") continue;
+            if (solver_case.formulation == Formulation::paper && !entry.has(SolverTrait::suits_paper))
+                continue;  // it takes seconds
             const auto solver = entry.make(solver_case.formulation);
             const RldReport report = solve_scene(*solver, set.scene, RldParameters{}, {}).report;
             ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
@@ -163,7 +163,7 @@ TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
         make_instance(lane_and_ring(), "ring", Formulation::tight, RldParameters{}, 10'000.0);
     ASSERT_TRUE(instance);
     ASSERT_EQ(instance->optimum.status, KnownOptimum::Status::optimal);
-    const MilpReport report = make_clp_bb_solver()->load(instance->program)->solve({});
+    const MilpReport report = kClpBb.load(instance->program)->solve({});
     ASSERT_EQ(report.status, SolveStatus::optimal);
     EXPECT_NEAR(*report.bound, *instance->optimum.best, kSameObjective);
     BinaryProgram bare = instance->program;
@@ -171,7 +171,7 @@ TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
     while (bare.rows[rows - 1].label.family == "separated") --rows;
     ASSERT_LT(rows, bare.rows.size());
     bare.truncate_rows(rows);
-    const MilpReport relaxed = make_clp_bb_solver()->load(bare)->solve({});
+    const MilpReport relaxed = kClpBb.load(bare)->solve({});
     ASSERT_EQ(relaxed.status, SolveStatus::optimal);
     EXPECT_LT(*relaxed.bound, *instance->optimum.best - 1.0);
 }

@@ -32,7 +32,8 @@ TEST(Relaxations, HoldsEverySolverWithoutProofAgainstPathPair) {
     AnswerErrors errors;
     const auto rows = relaxation_rows(scenes, without_limit({8, 12}), errors);
     EXPECT_FALSE(errors.any_answered_nothing());
-    const auto heuristics = std::ranges::count(rld_solvers(), false, &RldSolverEntry::exact);
+    const auto heuristics = std::ranges::count_if(
+        rld_solvers(), [](const RldSolverEntry& entry) { return !entry.has(SolverTrait::exact); });
     ASSERT_GT(heuristics, 0);
     ASSERT_THAT(rows, SizeIs(2 * (1 + heuristics)));
     for (std::size_t i = 0; i < rows.size(); ++i) {

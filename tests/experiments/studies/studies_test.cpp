@@ -64,7 +64,7 @@ TEST(ConeSets, AreSpreadEvenlyOverTheScenesThatHaveThem) {
 TEST(Backends, AreAllExactSolversOfTheRegistry) {
     std::vector<std::string> exact;
     for (const RldSolverEntry& entry : rld_solvers()) {
-        if (entry.exact) exact.emplace_back(entry.name);
+        if (entry.has(SolverTrait::exact)) exact.emplace_back(entry.name);
     }
     std::vector<std::string> found;
     for (const Backend& backend : exact_backends()) found.push_back(backend.solver);

@@ -2,7 +2,7 @@
 // one.
 
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/exhaustive.hpp"
+#include "solvers/core_entries.hpp"
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/frontier/dominated_edges.hpp"

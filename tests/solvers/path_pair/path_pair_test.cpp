@@ -4,9 +4,8 @@
 #include "conelane/bound_certificate.hpp"
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/exhaustive.hpp"
-#include "solvers/milp/cbc_solver.hpp"
-#include "solvers/milp/milp_rld_solver.hpp"
+#include "solvers/core_entries.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 #include "tests/support/agreement.hpp"
@@ -21,13 +20,13 @@ namespace {
 
 RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
                 double time_limit_ms = std::numeric_limits<double>::infinity()) {
-    return solver.solve(make_problem(scene, parameters), {time_limit_ms, 1e-9});
+    return solver.solve(make_problem(scene, parameters), {.limits = {time_limit_ms, 1e-9}});
 }
 
 /// One instance over many scenes of different sizes, with either default of d_max and either pairing.
 TEST(PathPair, AgreesWithCbc) {
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
-    const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
+    const std::unique_ptr<RldSolver> cbc = kCbc.entry.make(Formulation::tight);
     int feasible = 0;
     for (std::uint64_t seed = 0; seed < 120; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -76,14 +75,15 @@ TEST(PathPair, StartsFromALaneGraph) {
         if (!cold.lane_graph) continue;
         ++started;
         const LaneGraph& optimum = *cold.lane_graph;
-        EXPECT_EQ(solver->solve(problem, {}, &optimum).lane_graph, cold.lane_graph);
-        const RldReport stopped = solver->solve(problem, {.time_limit_ms = 0.0}, &optimum);
+        EXPECT_EQ(solver->solve(problem, {.start = &optimum}).lane_graph, cold.lane_graph);
+        const RldReport stopped =
+            solver->solve(problem, {.limits = {.time_limit_ms = 0.0}, .start = &optimum});
         EXPECT_EQ(stopped.status, SolveStatus::feasible);
         EXPECT_EQ(stopped.objective, cold.objective);
         EXPECT_EQ(stopped.stopped_by, StopReason::time);
         LaneGraph torn = optimum;
         torn.edges.erase(torn.edges.begin() + static_cast<std::ptrdiff_t>(torn.edges.size() / 2));
-        EXPECT_NEAR(*solver->solve(problem, {}, &torn).objective, *cold.objective, 1e-9);
+        EXPECT_NEAR(*solver->solve(problem, {.start = &torn}).objective, *cold.objective, 1e-9);
     }
     EXPECT_GT(started, 20);
 }
@@ -98,10 +98,10 @@ TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
     const LaneGraph start{{{0, 1}, {1, 2}, {2, 6}, {3, 4}, {4, 5}}};
     for (const double gap : {100.0, 1e6, std::numeric_limits<double>::infinity()}) {
         SCOPED_TRACE(testing::Message() << "gap " << gap);
-        const RldReport warm = solver->solve(problem, {.absolute_gap = gap}, &start);
+        const RldReport warm = solver->solve(problem, {.limits = {.absolute_gap = gap}, .start = &start});
         EXPECT_EQ(warm.status, SolveStatus::optimal);
         EXPECT_EQ(warm.lane_graph, start);
-        const RldReport cold = solver->solve(problem, {.absolute_gap = gap});
+        const RldReport cold = solver->solve(problem, {.limits = {.absolute_gap = gap}});
         EXPECT_EQ(cold.status, SolveStatus::optimal);
         ASSERT_TRUE(cold.lane_graph);
         EXPECT_TRUE(is_feasible(problem, *cold.lane_graph));
@@ -112,7 +112,7 @@ TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
 /// rounding must not lead to endless rounds.
 TEST(PathPair, EndsWhereEverythingTies) {
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
-    const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
+    const std::unique_ptr<RldSolver> cbc = kCbc.entry.make(Formulation::tight);
     for (const double spacing_m : {3.0, 3.2, 4.0}) {
         for (const double theta_t : {0.9, 2.0}) {
             SCOPED_TRACE(testing::Message() << spacing_m << " m, theta_t " << theta_t);

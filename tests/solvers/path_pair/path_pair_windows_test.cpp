@@ -2,7 +2,7 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/exhaustive.hpp"
+#include "solvers/core_entries.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -276,9 +276,10 @@ TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
             parameters.d_near = d_near_m;
             const LaneGraphProblem problem = make_problem(scene, parameters);
             const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
-            const RldReport first = solver->solve(problem, {.time_limit_ms = 150.0});
+            const RldReport first = solver->solve(problem, {.limits = {.time_limit_ms = 150.0}});
             if (!first.lane_graph) continue;
-            const RldReport again = solver->solve(problem, {.time_limit_ms = 300.0}, &*first.lane_graph);
+            const RldReport again =
+                solver->solve(problem, {.limits = {.time_limit_ms = 300.0}, .start = &*first.lane_graph});
             EXPECT_EQ(again.message, "");
             ASSERT_TRUE(again.lane_graph);
             EXPECT_LE(*again.objective, *first.objective + 1e-9);

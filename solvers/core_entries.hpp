@@ -1,10 +1,12 @@
 #pragma once
 
-#include "conelane/rld_solver.hpp"
-
-#include <memory>
+#include "conelane/core_solvers.hpp"
 
 namespace conelane {
+
+/// Entries of core_solvers, each defined beside its solver.
+extern const RldSolverEntry kPathPair;
+extern const RldSolverEntry kExhaustive;
 
 /// Largest cone set that `exhaustive` takes.
 inline constexpr std::size_t kExhaustiveMostCones = 9;
