@@ -30,6 +30,9 @@ struct CompareOptions {
     std::optional<std::size_t> nearest;
     std::vector<std::size_t> sizes{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60};
     std::vector<std::filesystem::path> shards;
+    bool is_full = false;
+    bool is_by_size = false;
+    bool is_merge = false;
 };
 
 Shard parse_shard(const std::string& text) {
@@ -73,11 +76,11 @@ void add_options(CLI::App& command, CompareOptions& options) {
         ->required();
     command.add_flag("--overwrite", comparison.overwrite,
                      "replace another comparison in that directory; without it, the command refuses to");
-    command.add_flag("--full",
+    command.add_flag("--full", options.is_full,
                      "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m; with the time limit of a "
                      "car, 50 ms");
     CLI::Option& by_size = *command.add_flag(
-        "--by-size",
+        "--by-size", options.is_by_size,
         "each method among each of --sizes nearest cones; by default 20 % false positives, a pose "
         "every 13.2 m, condition paper, and the methods rld-cbc, rld-pair, rld-shape and clc");
     add_nearest_option(command, options.nearest, "the same cone-set size for every method");
@@ -87,8 +90,8 @@ void add_options(CLI::App& command, CompareOptions& options) {
         ->delimiter(',')
         ->check(whole_number(1, kMaxCones))
         ->capture_default_str();
-    CLI::Option& merging =
-        *command.add_flag("--merge", "join the shards of one comparison, named in any order");
+    CLI::Option& merging = *command.add_flag("--merge", options.is_merge,
+                                             "join the shards of one comparison, named in any order");
     command.add_option("shards", options.shards, "directories of all shards, for --merge")->needs(&merging);
 }
 
@@ -96,12 +99,12 @@ void add_options(CLI::App& command, CompareOptions& options) {
 void choose_defaults(const CLI::App& command, CompareOptions& options) {
     const auto is_given = [&](const std::string& name) { return command.count(name) > 0; };
     SceneOptions& scenes = options.comparison.scenes;
-    if (is_given("--full")) {
+    if (options.is_full) {
         if (!is_given("--every")) scenes.every_m = 1.1;
         if (!is_given("--range")) scenes.ranges_m = {30.0, 50.0};
         if (!is_given("--time-limit")) options.comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
     }
-    if (is_given("--by-size")) {
+    if (options.is_by_size) {
         if (!is_given("--methods")) options.detectors = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
         if (!is_given("--fp")) scenes.false_positive_rates = {0.2};
         if (!is_given("--every")) scenes.every_m = 13.2;
@@ -109,7 +112,7 @@ void choose_defaults(const CLI::App& command, CompareOptions& options) {
     // Disturbances that are given one by one form a condition of their own.
     const bool is_disturbed =
         is_given("--noise") || is_given("--pose-noise") || is_given("--miss") || is_given("--persist");
-    if ((is_disturbed || is_given("--by-size")) && !is_given("--condition")) scenes.conditions.clear();
+    if ((is_disturbed || options.is_by_size) && !is_given("--condition")) scenes.conditions.clear();
 }
 
 void merge_and_print(const CompareOptions& options) {
@@ -127,9 +130,7 @@ void compare_and_print(CompareOptions& options) {
         for (const std::string& name : generated_track_names())
             comparison.tracks.push_back("generated:" + name);
     }
-    const bool any_rld = std::ranges::any_of(comparison.detectors, [](const ComparedDetector& compared) {
-        return compared.outside ? compared.outside->is_solver() : find_detector(compared.name).is_rld();
-    });
+    const bool any_rld = std::ranges::any_of(comparison.methods, &Method::is_rld);
     if (!any_rld) options.parameters.require_not_given("these methods have");
     options.parameters.apply_to(comparison.run.detector);
     comparison.scenes.threads = comparison.run.threads;
@@ -154,16 +155,16 @@ void add_compare_command(CLI::App& program) {
     scenes.conditions = {"paper", "car"};
     add_options(command, *options);
     command.callback([options, &command] {
-        if (command.count("--merge") > 0) {
+        if (options->is_merge) {
             if (options->shards.empty()) throw CLI::RequiredError("shards");
             return merge_and_print(*options);
         }
         choose_defaults(command, *options);
         std::vector<std::optional<std::size_t>> sizes{options->nearest};
-        if (command.count("--by-size") > 0) sizes.assign(options->sizes.begin(), options->sizes.end());
+        if (options->is_by_size) sizes.assign(options->sizes.begin(), options->sizes.end());
         for (const std::string& detector : split_detectors(options->detectors)) {
             for (const std::optional<std::size_t>& size : sizes)
-                options->comparison.detectors.push_back(parse_compared_detector(detector, size));
+                options->comparison.methods.push_back(parse_method(detector, size));
         }
         compare_and_print(*options);
     });

@@ -5,7 +5,6 @@
 #include "evaluation/scenes/degenerate_truth.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/tracks/track_spec.hpp"
-#include "experiments/comparison/runner.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -19,8 +18,6 @@
 
 namespace conelane {
 namespace {
-
-using experiments::lap_starts;
 
 const std::vector<std::string> kTracks{"generated:circle", "generated:kidney@2"};
 
