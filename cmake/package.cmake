@@ -72,18 +72,34 @@ function(conelane_join_files target group)
     endif()
 endfunction()
 
-# `conelane_embed(SOURCE HEADER [NAME FILE]...)`: makes the source file SOURCE of the build, which defines each std::string_view
-# NAME that HEADER declares as the bytes of FILE. Nothing is read from them here: the library parses its own files.
+# `conelane_embed(SOURCE HEADER [NAME FILE]... [LOOKUP FUNCTION FILE...])`: makes the source file SOURCE of the build, which
+# defines each std::string_view NAME that HEADER declares as the bytes of FILE, and FUNCTION, which HEADER declares too: the bytes
+# of a file by its name without ending. Nothing is read from them here: the library parses its own files.
 function(conelane_embed source header)
+    cmake_parse_arguments(ARG "" "" "LOOKUP" ${ARGN})
+    set(named ${ARG_UNPARSED_ARGUMENTS})
+    if(ARG_LOOKUP)
+        list(POP_FRONT ARG_LOOKUP lookup)
+    endif()
     set(definitions "")
-    while(ARGN)
-        list(POP_FRONT ARGN name file)
+    set(cases "")
+    foreach(file IN LISTS ARG_LOOKUP)
+        string(MAKE_C_IDENTIFIER k_${file} name)
+        list(APPEND named ${name} ${file})
+        cmake_path(GET file STEM LAST_ONLY stem)
+        string(APPEND cases "    if (name == \"${stem}\") return ${name};\n")
+    endforeach()
+    while(named)
+        list(POP_FRONT named name file)
         set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
         file(READ ${file} bytes HEX) # as numbers: compilers need not take strings of more than 65 536 characters
         string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
         string(APPEND definitions "constexpr char ${name}_bytes[]{${bytes}};\n"
                                   "constinit const std::string_view ${name}{${name}_bytes, sizeof ${name}_bytes};\n")
     endwhile()
+    if(cases)
+        string(APPEND definitions "\nstd::string_view ${lookup}(std::string_view name) {\n${cases}    return {};\n}\n")
+    endif()
     file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${source} @ONLY CONTENT [[
 #include "@header@"
 

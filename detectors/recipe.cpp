@@ -2,7 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
-#include "detectors/baseline_parameters.hpp"
 #include "detectors/drivable/drivable_answers.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
@@ -10,9 +9,13 @@
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_weights_reader.hpp"
 #include "graph_search/shared/json_reader.hpp"
+#include "graph_search/shared/parameter_field.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
+#include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -44,79 +47,102 @@ std::unique_ptr<LaneDetector> paper_clc() {
     return make_clc_detector(paper_clc_options());
 }
 
-std::unique_ptr<LaneDetector> delaunay_beam() {
-    return make_delaunay_beam_detector(tuned_delaunay_beam_parameters());
-}
-
-std::unique_ptr<LaneDetector> astar_lane() {
-    return make_astar_lane_detector(tuned_astar_lane_parameters());
+/// The recipe of a detector with a struct of parameters, from their fields.
+template <typename Parameters, std::span<const ParameterField<Parameters>> (*fields)(),
+          std::unique_ptr<LaneDetector> (*make)(const Parameters&)>
+constexpr TunedRecipe tuned() {
+    return {[] {
+                std::vector<TunableParameter> all;
+                for (const ParameterField<Parameters>& field : fields()) {
+                    all.push_back({field.key, field.unit, field.lowest, field.highest, field.logarithmic,
+                                   field.description, Parameters{}.*field.value});
+                }
+                return all;
+            },
+            [](std::span<const double> values) {
+                Parameters parameters;
+                for (std::size_t i = 0; i < values.size(); ++i) parameters.*fields()[i].value = values[i];
+                return make(parameters);
+            }};
 }
 
 /// Courses in view when the costs of the shape were set by hand.
-constexpr std::array<std::string_view, 7> kShapeCourses{"fsd_1", "fsd_2", "fsd_4", "fsd_5",
-                                                        "fsd_6", "fsd_7", "fsd_9"};
+constexpr std::string_view kShapeCourses[]{"fsd_1", "fsd_2", "fsd_4", "fsd_5", "fsd_6", "fsd_7", "fsd_9"};
 /// Courses named by the records of the parameters.
-constexpr std::array<std::string_view, 8> kDelaunayBeamCourses{
+constexpr std::string_view kDelaunayBeamCourses[]{
     "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
 /// The same, and the courses in view when hitting a cone got a cost.
-constexpr std::array<std::string_view, 12> kAstarLaneCourses{"fsd_1",
-                                                             "fsd_2",
-                                                             "fsd_4",
-                                                             "fsd_5",
-                                                             "fsd_6",
-                                                             "fsd_7",
-                                                             "fsd_9",
-                                                             "pacsim_FSE22",
-                                                             "pacsim_FSG19",
-                                                             "pacsim_FSO20",
-                                                             "eufs_small_track",
-                                                             "eufs_peanut"};
+constexpr std::string_view kAstarLaneCourses[]{"fsd_1",
+                                               "fsd_2",
+                                               "fsd_4",
+                                               "fsd_5",
+                                               "fsd_6",
+                                               "fsd_7",
+                                               "fsd_9",
+                                               "pacsim_FSE22",
+                                               "pacsim_FSG19",
+                                               "pacsim_FSO20",
+                                               "eufs_small_track",
+                                               "eufs_peanut"};
 
-constexpr std::array kRecipes{
-    DetectorRecipe{"front",
-                   "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
-                   "missed cones, answers with one boundary where it sees one alone",
-                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::used,
-                   FrontRecipe{shipped_front_options}},
-    DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
-                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::used,
-                   FrontRecipe{warm_front_options}},
-    DetectorRecipe{"clc",
-                   "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
-                   "search, a network on all features trained for usable lanes",
-                   LearnedFrom(kClcWeights), ClosedLanes::possible, ColorUse::ignored, OtherRecipe{clc}},
-    DetectorRecipe{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)",
-                   LearnedFrom(kClcWeights), ClosedLanes::possible, ColorUse::ignored, OtherRecipe{warm_clc}},
-    DetectorRecipe{"clc-paper", "CLC as printed: equation (3), eight features, equation (14)",
-                   LearnedFrom(kPaperClcWeights), ClosedLanes::possible, ColorUse::ignored,
-                   OtherRecipe{paper_clc}},
-    DetectorRecipe{"rld-pair", "RLD, exact search over pairs of paths, on all cones", LearnedFrom::nothing(),
-                   ClosedLanes::never, ColorUse::by_weight, RldRecipe{path_pair, {}}},
-    DetectorRecipe{"rld-shape",
-                   "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
-                   LearnedFrom({}, kShapeCourses), ClosedLanes::never, ColorUse::by_weight,
-                   RldRecipe{path_pair, {}, true}},
-    DetectorRecipe{
-        "rld-learned",
-        "rld-pair with learned costs of edges, turns and ends; steps over missed cones, and proves "
-        "that no lane is better by these costs",
-        LearnedFrom(kLearnedRldWeights), ClosedLanes::never, ColorUse::by_weight,
-        RldRecipe{path_pair, {}, false, "learned", kOtherNear_m}},
-    DetectorRecipe{"rld-context", "RLD by the exact search among more cones, then cut to the nearest",
-                   LearnedFrom::nothing(), ClosedLanes::never, ColorUse::by_weight,
-                   RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
-    DetectorRecipe{"rld-shape-context", "rld-context with the costs of the lane's shape",
-                   LearnedFrom({}, kShapeCourses), ClosedLanes::never, ColorUse::by_weight,
-                   RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
-    DetectorRecipe{"delaunay-beam",
-                   "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
-                   "the lowest cost",
-                   LearnedFrom({}, kDelaunayBeamCourses), ClosedLanes::never, ColorUse::used,
-                   OtherRecipe{delaunay_beam}},
-    DetectorRecipe{
-        "astar-lane",
-        "Tanzmeister et al.: a path of bounded curvature between cones by A*, boundaries read off it",
-        LearnedFrom({}, kAstarLaneCourses), ClosedLanes::never, ColorUse::ignored, OtherRecipe{astar_lane}},
+constexpr DetectorRecipe kRecipes[]{
+    {{"front",
+      "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
+      "missed cones, answers with one boundary where it sees one alone",
+      ClosedLanes::never, ColorUse::used},
+     LearnedFrom(kFrontWeights),
+     FrontRecipe{shipped_front_options}},
+    {{"front-warm", "front that favours the cones of its last lane along a lap", ClosedLanes::never,
+      ColorUse::used},
+     LearnedFrom(kFrontWeights),
+     FrontRecipe{warm_front_options}},
+    {{"clc",
+      "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
+      "search, a network on all features trained for usable lanes",
+      ClosedLanes::possible, ColorUse::ignored},
+     LearnedFrom(kClcWeights),
+     OtherRecipe{clc}},
+    {{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", ClosedLanes::possible,
+      ColorUse::ignored},
+     LearnedFrom(kClcWeights),
+     OtherRecipe{warm_clc}},
+    {{"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", ClosedLanes::possible,
+      ColorUse::ignored},
+     LearnedFrom(kPaperClcWeights),
+     OtherRecipe{paper_clc}},
+    {{"rld-pair", "RLD, exact search over pairs of paths, on all cones", ClosedLanes::never,
+      ColorUse::by_weight},
+     LearnedFrom::nothing(),
+     RldRecipe{path_pair, {}}},
+    {{"rld-shape", "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
+      ClosedLanes::never, ColorUse::by_weight},
+     LearnedFrom({}, kShapeCourses),
+     RldRecipe{path_pair, {}, true}},
+    {{"rld-learned",
+      "rld-pair with learned costs of edges, turns and ends; steps over missed cones, and proves "
+      "that no lane is better by these costs",
+      ClosedLanes::never, ColorUse::by_weight},
+     LearnedFrom(kLearnedRldWeights),
+     RldRecipe{path_pair, {}, false, "learned", kOtherNear_m}},
+    {{"rld-context", "RLD by the exact search among more cones, then cut to the nearest", ClosedLanes::never,
+      ColorUse::by_weight},
+     LearnedFrom::nothing(),
+     RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
+    {{"rld-shape-context", "rld-context with the costs of the lane's shape", ClosedLanes::never,
+      ColorUse::by_weight},
+     LearnedFrom({}, kShapeCourses),
+     RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
+    {{"delaunay-beam",
+      "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
+      "the lowest cost",
+      ClosedLanes::never, ColorUse::used},
+     LearnedFrom({}, kDelaunayBeamCourses),
+     tuned<DelaunayBeamParameters, delaunay_beam_fields, make_delaunay_beam_detector>()},
+    {{"astar-lane",
+      "Tanzmeister et al.: a path of bounded curvature between cones by A*, boundaries read off it",
+      ClosedLanes::never, ColorUse::ignored},
+     LearnedFrom({}, kAstarLaneCourses),
+     tuned<AstarLaneParameters, astar_lane_fields, make_astar_lane_detector>()},
 };
 
 /// The courses that the record of a weight file names.
@@ -177,12 +203,35 @@ std::span<const DetectorRecipe> detector_recipes() {
     return kRecipes;
 }
 
+const DetectorRecipe* find_recipe(std::string_view name) {
+    const auto recipe = std::ranges::find(kRecipes, name, &DetectorRecipe::name);
+    return recipe == std::ranges::end(kRecipes) ? nullptr : recipe;
+}
+
 std::set<std::string> training_courses(const DetectorRecipe& recipe) {
     const auto set_with = recipe.learned_from.courses();
     std::set<std::string> courses(set_with.begin(), set_with.end());
     for (const std::string_view* const weights : recipe.learned_from.weights())
         courses.merge(courses_of(*weights));
     return courses;
+}
+
+std::vector<double> shipped_values(const DetectorRecipe& recipe) {
+    std::map<std::string, double, std::less<>> stored;
+    JsonReader json(parameter_file(recipe.name), "parameters");
+    json.object([&](const std::string& key) {
+        if (!stored.emplace(key, json.number()).second) throw InvalidInput(key, "is there twice");
+    });
+    json.require_end();
+    std::vector<double> values;
+    for (const TunableParameter& parameter : recipe.tuned()->parameters()) {
+        const auto found = stored.find(parameter.key);
+        if (found == stored.end()) throw InvalidInput(std::string(parameter.key), "is missing");
+        values.push_back(found->second);
+        stored.erase(found);
+    }
+    if (!stored.empty()) throw InvalidInput(stored.begin()->first, "is not a parameter");
+    return values;
 }
 
 DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options) {
@@ -208,6 +257,8 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
         FrontOptions made = front->options();
         if (options.weights) made.weights = weights_of(*options.weights);
         detector = make_front_detector(made);
+    } else if (const auto* tuned_recipe = recipe.tuned()) {
+        detector = tuned_recipe->make(shipped_values(recipe));
     } else {
         detector = std::get<OtherRecipe>(recipe.how).make();
     }

@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace conelane {
 
@@ -30,6 +31,25 @@ struct RldRecipe {
 /// `front`, whose weights may be replaced.
 struct FrontRecipe {
     FrontOptions (*options)();
+};
+
+/// A number that tuning changes.
+struct TunableParameter {
+    std::string_view key;
+    std::string_view unit;
+    double lowest;
+    double highest;
+    bool logarithmic;  ///< equal steps are equal ratios
+    std::string_view description;
+    double start;  ///< set by hand, so independent of the courses that a tuning holds out
+};
+
+/// A detector of numbers that are tuned without knowledge of their meaning. The shipped ones are in
+/// parameters/NAME.json; parameters/NAME.record.json has the scenes on which `conelane tune` found them.
+struct TunedRecipe {
+    std::vector<TunableParameter> (*parameters)();
+    /// The detector of these values, in the order of the parameters.
+    std::unique_ptr<LaneDetector> (*make)(std::span<const double> values);
 };
 
 /// Any other detector: the function that makes it.
@@ -63,27 +83,31 @@ inline constexpr std::array kPaperClcWeights{&kRankNetPaperFile};
 inline constexpr std::array kClcRankWeights{&kRankNetExtendedFile};
 inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile};
 
-/// How to make a detector of that name, and its properties.
-struct DetectorRecipe {
-    std::string_view name;
-    std::string_view description;
+/// How to make a detector.
+struct DetectorRecipe : DetectorInfo {
     LearnedFrom learned_from;
-    ClosedLanes closed_lanes;
-    ColorUse color_use;
-    std::variant<RldRecipe, FrontRecipe, OtherRecipe> how;
+    std::variant<RldRecipe, FrontRecipe, TunedRecipe, OtherRecipe> how;
 
     /// Whether it optimises the RLD objective.
     [[nodiscard]] bool is_rld() const { return std::holds_alternative<RldRecipe>(how); }
     /// Whether its weights may be replaced.
     [[nodiscard]] bool takes_weights() const { return std::holds_alternative<FrontRecipe>(how); }
+    /// Null if it has no numbers to tune.
+    [[nodiscard]] const TunedRecipe* tuned() const { return std::get_if<TunedRecipe>(&how); }
 };
 
 /// The detectors of the library.
 [[nodiscard]] std::span<const DetectorRecipe> detector_recipes();
 
+/// Null if the library has none of that name.
+[[nodiscard]] const DetectorRecipe* find_recipe(std::string_view name);
+
 /// The courses that a detector has learned from, by the names of the tracks: those in the records of its
 /// weights, and those in view when its parameters were set. Empty if it has learned from none.
 [[nodiscard]] std::set<std::string> training_courses(const DetectorRecipe& recipe);
+
+/// The shipped values of a tuned detector, in the order of its parameters.
+[[nodiscard]] std::vector<double> shipped_values(const DetectorRecipe& recipe);
 
 /// The options without those that the detector does not use: for one set of options and several detectors.
 [[nodiscard]] DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options);

@@ -1,10 +1,13 @@
 #include "conelane/rld_parameter_sets.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "detectors/parameters/parameter_files.hpp"
-#include "detectors/parameters/parameter_reader.hpp"
+#include "graph_search/shared/json_reader.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <set>
 #include <string>
 
 namespace conelane {
@@ -19,20 +22,26 @@ RldParameters parameters_of(std::string_view file) {
     std::vector<RldParameterField> fields(rld_parameter_fields().begin(), rld_parameter_fields().end());
     fields.insert(fields.end(), rld_extra_fields().begin(), rld_extra_fields().end());
     RldParameters parameters;
-    const auto keys =
-        read_parameters(file, fields, parameters, [&](JsonReader& json, const std::string& key) {
-            if (key == "learned_costs") {  // the only embedded weights file
-                json.skip();
-                parameters.learned_costs = parse_learned_costs(kLearnedWeightsFile);
-                return true;
-            }
-            if (key != "pairing") return false;
+    std::set<std::string, std::less<>> keys;
+    JsonReader json(file, "parameters");
+    json.object([&](const std::string& key) {
+        if (!keys.insert(key).second) throw InvalidInput(key, "is there twice");
+        const auto field = std::ranges::find(fields, key, &RldParameterField::key);
+        if (field != fields.end()) {
+            parameters.*field->value = json.number();
+        } else if (key == "learned_costs") {  // the only embedded weights file
+            json.skip();
+            parameters.learned_costs = parse_learned_costs(kLearnedWeightsFile);
+        } else if (key == "pairing") {
             const std::string pairing = json.string();
             if (pairing != to_string(Pairing::paper) && pairing != to_string(Pairing::near_far))
                 throw InvalidInput(key, "is not a pairing");
             parameters.pairing = pairing == to_string(Pairing::paper) ? Pairing::paper : Pairing::near_far;
-            return true;
-        });
+        } else {
+            throw InvalidInput(key, "is not a parameter");
+        }
+    });
+    json.require_end();
     for (const RldParameterField& field : rld_parameter_fields()) {
         if (!keys.contains(field.key)) throw InvalidInput(std::string(field.key), "is missing");
     }
@@ -42,11 +51,12 @@ RldParameters parameters_of(std::string_view file) {
 }
 
 const std::vector<ParameterSet>& parameter_sets() {
-    static const std::vector<ParameterSet> kSets{{"n12", parameters_of(kN12File)},
-                                                 {"context", parameters_of(kContextFile)},
-                                                 {"shape", parameters_of(kShapeFile)},
-                                                 {"full", parameters_of(kFullFile)},
-                                                 {"learned", parameters_of(kLearnedFile)}};
+    static const std::vector<ParameterSet> kSets = [] {
+        std::vector<ParameterSet> sets;
+        for (const std::string_view name : {"n12", "context", "shape", "full", "learned"})
+            sets.push_back({name, parameters_of(parameter_file(name))});
+        return sets;
+    }();
     return kSets;
 }
 

@@ -5,13 +5,9 @@
 namespace conelane {
 
 // The files beside this one, byte by byte, embedded when the library was configured.
-extern const std::string_view kN12File;
-extern const std::string_view kContextFile;
-extern const std::string_view kShapeFile;
-extern const std::string_view kFullFile;
-extern const std::string_view kLearnedFile;
 extern const std::string_view kLearnedWeightsFile;
-extern const std::string_view kDelaunayBeamFile;
-extern const std::string_view kAstarLaneFile;
+
+/// NAME.json; empty if there is none.
+[[nodiscard]] std::string_view parameter_file(std::string_view name);
 
 }  // namespace conelane

@@ -6,6 +6,7 @@
 #include "evaluation/outside/solver_program.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <iterator>
 #include <sstream>
@@ -21,9 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+using Kind = OutsideDetector::Kind;
+
 constexpr std::string_view kProgram = "exec:";
-constexpr std::string_view kLanes = "lanes:";
 constexpr std::string_view kSolver = "solver:";
+constexpr std::array kKinds{Kind::program, Kind::lanes, Kind::solver};
 constexpr std::size_t kMaxName = 64;
 
 /// The name becomes part of a file name.
@@ -49,19 +52,6 @@ fs::path card_beside(const fs::path& file) {
     return file.parent_path() / (name + ".method.json");
 }
 
-/// The key of the source in a record.
-const char* source_key(OutsideDetector::Kind kind) {
-    switch (kind) {
-        case OutsideDetector::Kind::program:
-            return "exec";
-        case OutsideDetector::Kind::lanes:
-            return "lanes";
-        case OutsideDetector::Kind::solver:
-            return "solver";
-    }
-    return "exec";
-}
-
 Formulation formulation_of(std::string_view name) {
     for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
         if (to_string(formulation) == name) return formulation;
@@ -70,8 +60,7 @@ Formulation formulation_of(std::string_view name) {
 }
 
 /// NAME=SOURCE, for a solver also NAME/FORMULATION=SOURCE. `prefix` is for error messages.
-OutsideDetector parse_named_source(std::string_view text, OutsideDetector::Kind kind,
-                                   std::string_view prefix) {
+OutsideDetector parse_named_source(std::string_view text, Kind kind, std::string_view prefix) {
     OutsideDetector detector;
     detector.kind = kind;
     const std::string form = fmt::format("{}NAME={}", prefix, detector.is_lanes_file() ? "FILE" : "COMMAND");
@@ -94,25 +83,19 @@ OutsideDetector parse_named_source(std::string_view text, OutsideDetector::Kind 
     return detector;
 }
 
-std::optional<std::string> find_string(const JsonNode& json, std::string_view key) {
-    const auto found = json.find(key);
-    if (!found) return std::nullopt;
-    return found->string();
-}
-
-std::optional<bool> find_boolean(const JsonNode& json, std::string_view key) {
-    const auto found = json.find(key);
-    if (!found) return std::nullopt;
-    return found->boolean();
-}
-
 DetectorCard read_card(const JsonNode& json) {
     DetectorCard card;
-    card.name = find_string(json, "name");
-    card.address = find_string(json, "address");
-    card.licence = find_string(json, "licence");
-    card.color_used = find_boolean(json, "colour_used");
-    card.history_used = find_boolean(json, "history_used");
+    const auto text = [&](const char* key, std::optional<std::string>& value) {
+        if (const auto found = json.find(key)) value = found->string();
+    };
+    const auto boolean = [&](const char* key, std::optional<bool>& value) {
+        if (const auto found = json.find(key)) value = found->boolean();
+    };
+    text("name", card.name);
+    text("address", card.address);
+    text("licence", card.licence);
+    boolean("colour_used", card.color_used);
+    boolean("history_used", card.history_used);
     if (const auto courses = json.find("training_courses")) {
         card.training_courses.emplace();
         const std::size_t size = courses->array_size();
@@ -137,6 +120,10 @@ ordered_json to_json(const DetectorCard& card) {
 
 }  // namespace
 
+const char* to_string(OutsideDetector::Kind kind) {
+    return kind == Kind::program ? "exec" : kind == Kind::lanes ? "lanes" : "solver";
+}
+
 std::string DetectorCard::summary() const {
     std::vector<std::string> parts;
     if (name) parts.push_back(*name);
@@ -153,9 +140,8 @@ std::string DetectorCard::summary() const {
 }
 
 std::optional<OutsideDetector> parse_outside_detector(std::string_view text) {
-    using Kind = OutsideDetector::Kind;
-    for (const auto& [prefix, kind] :
-         {std::pair{kProgram, Kind::program}, {kLanes, Kind::lanes}, {kSolver, Kind::solver}}) {
+    for (const Kind kind : kKinds) {
+        const std::string prefix = std::string(to_string(kind)) + ":";
         if (!text.starts_with(prefix)) continue;
         OutsideDetector detector = parse_named_source(text.substr(prefix.size()), kind, prefix);
         if (const auto card = card_path(detector)) detector.card = read_detector_card(*card);
@@ -166,7 +152,7 @@ std::optional<OutsideDetector> parse_outside_detector(std::string_view text) {
 
 std::optional<OutsideDetector> parse_outside_solver(std::string_view text) {
     if (!text.starts_with(kProgram)) return std::nullopt;
-    return parse_named_source(text.substr(kProgram.size()), OutsideDetector::Kind::solver, kProgram);
+    return parse_named_source(text.substr(kProgram.size()), Kind::solver, kProgram);
 }
 
 std::vector<std::string> split_detectors(const std::vector<std::string>& texts) {
@@ -205,7 +191,7 @@ DetectorCard read_detector_card(const fs::path& file) {
 }
 
 std::string outside_detector_json(const OutsideDetector& detector) {
-    ordered_json json{{"name", detector.name}, {source_key(detector.kind), detector.source}};
+    ordered_json json{{"name", detector.name}, {to_string(detector.kind), detector.source}};
     if (detector.formulation) json["formulation"] = to_string(*detector.formulation);
     if (detector.card) json["card"] = to_json(*detector.card);
     return to_line(json);
@@ -219,9 +205,8 @@ std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_
         for (std::size_t i = 0; i < size; ++i) {
             const JsonNode detector = all->element(i);
             OutsideDetector outside;
-            for (const auto kind : {OutsideDetector::Kind::program, OutsideDetector::Kind::lanes,
-                                    OutsideDetector::Kind::solver}) {
-                const auto source = detector.find(source_key(kind));
+            for (const Kind kind : kKinds) {
+                const auto source = detector.find(to_string(kind));
                 if (!source) continue;
                 outside.kind = kind;
                 outside.source = source->string();

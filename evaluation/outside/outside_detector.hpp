@@ -42,6 +42,9 @@ struct OutsideDetector {
     [[nodiscard]] bool is_solver() const { return kind == Kind::solver; }
 };
 
+/// As texts and records say it: "exec", "lanes" or "solver".
+[[nodiscard]] const char* to_string(OutsideDetector::Kind kind);
+
 /// The method that `exec:NAME=COMMAND`, `lanes:NAME=FILE`, `solver:NAME=COMMAND` or
 /// `solver:NAME/FORMULATION=COMMAND` names, with its card; nothing for other texts. Throws InvalidInput if
 /// the name is missing or has characters that a file name may not have, or if there is no such formulation;

@@ -67,6 +67,20 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
     return set;
 }
 
+bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {
+    return a.track == b.track && a.condition == b.condition &&
+           a.false_positive_rate == b.false_positive_rate && a.range_m == b.range_m;
+}
+
+std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
+    std::vector<std::size_t> starts;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        if (i == 0 || !same_lap(scenes[i - 1], scenes[i])) starts.push_back(i);
+    }
+    starts.push_back(scenes.size());
+    return starts;
+}
+
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set) {
     write_scene_set(scenes_file, set, {});
 }

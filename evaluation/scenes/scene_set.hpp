@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,14 @@ struct Shard {
 /// laps. Throws InputError if a track is named twice or no scene of any shard has a ground truth.
 [[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
                                       const SceneOptions& options, const Shard& shard = {});
+
+/// Whether two scenes are of one lap: the same track, condition, rate and range.
+[[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
+
+/// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track,
+/// condition, rate and range. It is the unit of work, because a detector with state must see each lap alone
+/// and from its beginning.
+[[nodiscard]] std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes);
 
 /// Writes the scenes file and its companion beside it.
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set);

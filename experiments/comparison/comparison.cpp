@@ -32,45 +32,33 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScenesFile = "scenes.scenes.jsonl";
 
-DetectorMaker maker_of(const ComparedDetector& compared, const RunOptions& options) {
-    if (compared.maker) return compared.maker(options);
-    if (compared.outside && compared.outside->is_solver()) return maker_of_solver(*compared.outside, options);
-    if (compared.outside) return maker_of_program(compared.name, compared.outside->source, options);
-    const KnownDetector& detector = find_detector(compared.name);
-    RunOptions used = options;
-    used.detector = options_used_by(detector, options.detector);
-    return maker_of(detector, used);
-}
-
-/// Runs a detector on the scenes that its lanes file does not yet answer.
-void answer_scenes(const ComparedDetector& compared, std::span<const AnnotatedScene> scenes,
-                   RunOptions options, const fs::path& file) {
+/// Runs a method on the scenes that its lanes file does not yet answer.
+void answer_scenes(const Method& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
+                   const fs::path& file) {
     if (fs::exists(file)) return;
-    options.detector.nearest = compared.nearest;
     LaneLog log(file);
     const std::vector<std::size_t> starts = lap_starts(scenes);
     // An incomplete lap is driven again, because a detector with state must see it from its beginning.
     const std::size_t stored = std::min(log.stored(), scenes.size());
     const std::size_t done = *std::prev(std::ranges::upper_bound(starts, stored));
     log.keep(done);
-    run(compared.name, maker_of(compared, options), scenes.subspan(done), options,
-        [&](std::span<const LaneRecord> lap) { log.append(lap); });
+    run(method, scenes.subspan(done), options, [&](std::span<const LaneRecord> lap) { log.append(lap); });
     log.finish();
 }
 
-/// The answers of the lanes files among the detectors, by name. They are read before anything is written, so
+/// The answers of the lanes files among the methods, by name. They are read before anything is written, so
 /// that an invalid file cannot stop a run that has begun.
 std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOptions& options,
                                                               std::span<const AnnotatedScene> scenes,
                                                               const fs::path& directory) {
     std::map<std::string, std::vector<LaneRecord>> lanes;
-    for (const ComparedDetector& compared : options.detectors) {
-        if (!compared.outside || !compared.outside->is_lanes_file()) continue;
-        const fs::path file = compared.outside->source;
+    for (const Method& method : options.methods) {
+        if (!method.is_lanes_file()) continue;
+        const fs::path file = method.outside->source;
         std::error_code ignored;
         if (fs::equivalent(fs::absolute(file).parent_path(), directory, ignored))
             throw InputError(file, 0, "", "is in the directory of the results, whose files would replace it");
-        lanes.emplace(compared.name, read_finished_lanes(*compared.outside, scenes));
+        lanes.emplace(method.name, read_finished_lanes(*method.outside, scenes));
     }
     return lanes;
 }
@@ -118,13 +106,11 @@ ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set
 ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& directory) {
     std::set<std::string> lanes_files_seen;
     bool any_program = false;
-    for (const ComparedDetector& compared : options.detectors) {
-        if (!compared.outside) (void)find_detector(compared.name);
-        any_program = any_program || (compared.outside && compared.outside->is_program());
-        if (lanes_files_seen.insert(compared.lanes_file()).second) continue;
-        const std::string cones =
-            compared.nearest ? " of " + std::to_string(*compared.nearest) + " cones" : "";
-        throw InvalidInput("method", "'" + compared.name + "'" + cones + " is named twice");
+    for (const Method& method : options.methods) {
+        any_program = any_program || method.programs;
+        if (lanes_files_seen.insert(method.lanes_file()).second) continue;
+        const std::string cones = method.nearest ? " of " + std::to_string(*method.nearest) + " cones" : "";
+        throw InvalidInput("method", "'" + method.name + "'" + cones + " is named twice");
     }
     const std::string record = run_record(options);
     LeftOutScenes left_out;
@@ -146,14 +132,14 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
     if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     if (options.prepare) options.prepare();
     std::vector<std::string> lanes_files;
-    for (const ComparedDetector& compared : options.detectors) {
-        lanes_files.push_back(compared.lanes_file());
+    for (const Method& method : options.methods) {
+        lanes_files.push_back(method.lanes_file());
         const fs::path file = directory / lanes_files.back();
-        const auto lanes = finished.find(compared.name);
+        const auto lanes = finished.find(method.name);
         if (lanes != finished.end()) {
             write_lanes(file, lanes->second);
         } else {
-            answer_scenes(compared, set.scenes, options.run, file);
+            answer_scenes(method, set.scenes, options.run, file);
         }
     }
     const fs::path echo_file = directory / kEchoFloorFile;

@@ -37,8 +37,8 @@ EchoFloor measure_echo_floor(std::span<const AnnotatedScene> scenes) {
     RunOptions options;
     options.show_progress = false;
     EchoFloor floor;
-    const std::string command = "exec " + quoted(program.string()) + " echo";
-    for (const LaneRecord& record : run("echo", maker_of_program("echo", command, options), some, options)) {
+    const Method echo = parse_method("exec:echo=exec " + quoted(program.string()) + " echo");
+    for (const LaneRecord& record : run(echo, some, options)) {
         if (record.answer.status == LaneStatus::none) floor.push_back(record.latency_ms);
     }
     return floor;

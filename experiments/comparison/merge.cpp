@@ -115,9 +115,9 @@ ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& dir
     write_scene_set(directory / "scenes.scenes.jsonl", set, left_out);
     std::vector<std::string> lanes_files;
     for (const ordered_json& detector : run.record.at("methods")) {
-        ComparedDetector compared{detector.at("name").get<std::string>()};
-        if (detector.contains("nearest")) compared.nearest = detector["nearest"].get<std::size_t>();
-        lanes_files.push_back(compared.lanes_file());
+        Method method{detector.at("name").get<std::string>()};
+        if (detector.contains("nearest")) method.nearest = detector["nearest"].get<std::size_t>();
+        lanes_files.push_back(method.lanes_file());
         std::vector<std::vector<LaneRecord>> lanes;
         for (const fs::path& shard : run.directories) lanes.push_back(read_lanes(shard / lanes_files.back()));
         for (std::size_t part = 0; part < lanes.size(); ++part) {

@@ -4,7 +4,6 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/progress/progress.hpp"
 
@@ -100,8 +99,7 @@ nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
 
 nlohmann::ordered_json outside_part(const OutsideDetector& detector, const std::vector<double>& own_ms,
                                     const EchoFloor& echo) {
-    const char* const kind = detector.is_program() ? "exec" : detector.is_solver() ? "solver" : "lanes";
-    nlohmann::ordered_json part{{"outside", kind}};
+    nlohmann::ordered_json part{{"outside", to_string(detector.kind)}};
     if (!own_ms.empty()) part["self_timed_ms"] = median_and_p95(own_ms);
     if (detector.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
     const auto described = nlohmann::ordered_json::parse(outside_detector_json(detector));

@@ -1,6 +1,5 @@
 #include "experiments/comparison/run_record.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/input_error.hpp"
@@ -79,55 +78,29 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
     return json;
 }
 
-nlohmann::ordered_json to_json(const OutsideDetector& detector) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::parse(outside_detector_json(detector));
-    if (!detector.is_lanes_file()) return json;
-    json["hash"] = file_hash(detector.source);
-    if (json["hash"].empty()) throw InputError(detector.source, 0, "", "cannot be read");
+nlohmann::ordered_json to_json(const Method& method, const DetectorOptions& options) {
+    nlohmann::ordered_json json{{"name", method.name}};
+    if (method.outside) json = nlohmann::ordered_json::parse(outside_detector_json(*method.outside));
+    if (method.is_lanes_file()) {
+        json["hash"] = file_hash(method.outside->source);
+        if (json["hash"].empty()) throw InputError(method.outside->source, 0, "", "cannot be read");
+    }
+    if (method.nearest) json["nearest"] = *method.nearest;
+    if (method.is_rld()) json["rld_parameters"] = to_json(method.rld_parameters(options));
     return json;
 }
 
 }  // namespace
 
-ComparedDetector parse_compared_detector(const std::string& text, std::optional<std::size_t> nearest) {
-    if (auto outside = find_outside_detector(text)) {
-        if (nearest && outside->is_lanes_file()) {
-            throw InvalidInput(
-                "method", "'" + outside->name + "' is a finished lanes file, no cone-set size can be given");
-        }
-        std::string name = outside->name;
-        return {std::move(name), nearest, std::move(outside)};
-    }
-    return {std::string(find_detector(text).name), nearest, {}};
-}
-
-std::string ComparedDetector::lanes_file() const {
-    return nearest ? fmt::format("{}.n{:03}.lanes.jsonl", name, *nearest) : name + ".lanes.jsonl";
-}
-
 std::string run_record(const ComparisonOptions& options) {
     const Provenance origin = provenance();
-    nlohmann::ordered_json detectors = nlohmann::ordered_json::array();
-    for (const ComparedDetector& compared : options.detectors) {
-        nlohmann::ordered_json json{{"name", compared.name}};
-        if (compared.outside) json = to_json(*compared.outside);
-        if (compared.nearest) json["nearest"] = *compared.nearest;
-        if (compared.outside) {
-            if (compared.outside->is_solver())
-                json["rld_parameters"] = to_json(solver_parameters(options.run.detector));
-            detectors.push_back(json);
-            continue;
-        }
-        const KnownDetector& detector = find_detector(compared.name);
-        if (detector.is_rld())
-            json["rld_parameters"] = to_json(rld_parameters(detector, options.run.detector));
-        detectors.push_back(json);
-    }
+    nlohmann::ordered_json methods = nlohmann::ordered_json::array();
+    for (const Method& method : options.methods) methods.push_back(to_json(method, options.run.detector));
     nlohmann::ordered_json record{{"commit", origin.commit},
                                   {"compiler", origin.compiler},
                                   {"machine", origin.machine},
                                   {"tracks", options.tracks},
-                                  {"methods", detectors}};
+                                  {"methods", methods}};
     record.update(scene_options_json(options.scenes));
     record["threads"] = options.run.threads;
     record["candidates"] = options.run.limits.keep_candidates;

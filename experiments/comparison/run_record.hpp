@@ -1,7 +1,6 @@
 #pragma once
 
 #include "evaluation/files/folder_lock.hpp"
-#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "experiments/comparison/runner.hpp"
@@ -14,40 +13,21 @@
 
 namespace conelane::experiments {
 
-/// A detector, with the cone-set size that replaces its own.
-struct ComparedDetector {
-    std::string name;  ///< of a detector of this program, or of `outside`
-    std::optional<std::size_t> nearest = {};
-    std::optional<OutsideDetector> outside = {};
-    /// Another way to make the detector, for example from weights that have not seen the course; absent: by
-    /// name.
-    std::function<DetectorMaker(const RunOptions&)> maker = {};
-
-    /// Name of its lanes file: NAME.lanes.jsonl or NAME.n012.lanes.jsonl.
-    [[nodiscard]] std::string lanes_file() const;
-};
-
 /// Everything that the answers of a comparison depend on, and whether they may replace others.
 struct ComparisonOptions {
     std::vector<std::string> tracks;  ///< SPECs of load_tracks
-    std::vector<ComparedDetector> detectors;
+    std::vector<Method> methods;
     SceneOptions scenes;
     RunOptions run;
     Shard shard;
     bool overwrite = false;  ///< whether results of another run in the directory are replaced
-    /// Preparation of the detectors, called once the directory is locked and ready.
+    /// Preparation of the methods, called once the directory is locked and ready.
     std::function<void()> prepare = {};
     std::string cross_validation = {};  ///< JSON object: what the folds depend on; empty without folds
 };
 
-/// The detector of a text of `--methods`. Throws InvalidInput if there is no such detector, or if a
-/// finished lanes file is given a cone-set size; InputError if the card of a detector from outside is
-/// invalid.
-[[nodiscard]] ComparedDetector parse_compared_detector(const std::string& text,
-                                                       std::optional<std::size_t> nearest = {});
-
 /// The options, and commit, compiler and machine of this program, as a JSON object in one line. If the commit
-/// does not identify the program (changed sources, or no commit), a hash of the program is added. A detector
+/// does not identify the program (changed sources, or no commit), a hash of the program is added. A method
 /// from outside is recorded with its command, or with its file and a hash of it, and with its card. Throws
 /// InputError if that file cannot be read.
 [[nodiscard]] std::string run_record(const ComparisonOptions& options);

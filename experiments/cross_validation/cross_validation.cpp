@@ -100,9 +100,9 @@ void check(const CrossValidationOptions& options) {
     }
     if (options.colors_from.empty()) return;
     if (!options.learning.scenes.with_color) throw InvalidInput("colors-from", "needs scenes with colour");
-    for (const ComparedDetector& compared : options.comparison.detectors) {
-        if (!compared.outside && find_detector(compared.name).color_use == ColorUse::ignored)
-            throw InvalidInput("colors-from", fmt::format("'{}' ignores colours", compared.name));
+    for (const Method& method : options.comparison.methods) {
+        if (method.recipe != nullptr && method.recipe->color_use == ColorUse::ignored)
+            throw InvalidInput("colors-from", fmt::format("'{}' ignores colours", method.name));
     }
 }
 
@@ -126,19 +126,18 @@ ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs
             LearningOptions learning = without(options, family);
             if (!options.colors_from.empty()) learning.without_colors = options.colors_from / family.name;
             fs::create_directories(folds / family.name);
-            for (const ComparedDetector& compared : options.comparison.detectors) {
-                const Learner* learner = compared.outside ? nullptr : find_learner(compared.name);
-                if (learner != nullptr) learner->learn(learning, folds / family.name);
+            for (const Method& method : options.comparison.methods) {
+                if (method.learner != nullptr)
+                    method.learner->learn(*method.recipe, learning, folds / family.name);
             }
         }
     };
-    for (ComparedDetector& compared : comparison.detectors) {
-        const Learner* learner = compared.outside ? nullptr : find_learner(compared.name);
-        if (learner == nullptr) continue;
-        compared.maker = [learner, folds, family_of, &options](const RunOptions& run) -> DetectorMaker {
+    for (Method& method : comparison.methods) {
+        if (method.learner == nullptr) continue;
+        method.maker_of_folds = [learned = method, folds, family_of, &options](const RunOptions& run) {
             std::map<std::string, DetectorMaker> of_family;
             for (const CourseFamily& family : options.families)
-                of_family.emplace(family.name, learner->maker(folds / family.name, run));
+                of_family.emplace(family.name, learned.learned_maker(folds / family.name, run));
             return [of_family = std::move(of_family), family_of](const std::string& track) {
                 return of_family.at(family_of->at(track))(track);
             };

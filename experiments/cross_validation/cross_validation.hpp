@@ -2,7 +2,6 @@
 
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/cross_validation/course_family.hpp"
-#include "experiments/cross_validation/learners.hpp"
 
 #include <filesystem>
 #include <string>
@@ -20,7 +19,7 @@ struct CrossValidationOptions {
     /// `front` learns its set for colors, `rld-shape` its weight of colors, and `rld-learned` goes on with
     /// all costs. Empty: everything is learned from the beginning. Only for scenes with colors.
     std::filesystem::path colors_from;
-    /// The detectors, the scenes on which they are scored, and how they are run. Its tracks are those of the
+    /// The methods, the scenes on which they are scored, and how they are run. Its tracks are those of the
     /// families.
     ComparisonOptions comparison;
 };

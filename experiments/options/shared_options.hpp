@@ -1,9 +1,8 @@
 #pragma once
 
-#include "conelane/rld_parameters.hpp"
+#include "conelane/detectors.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
-#include "experiments/comparison/known_detectors.hpp"
 
 #include <cstdint>
 #include <memory>

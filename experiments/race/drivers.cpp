@@ -2,11 +2,11 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/outside/outside_detector.hpp"
+#include "evaluation/outside/outside_program.hpp"
 #include "evaluation/outside/point_snapping.hpp"
-#include "experiments/comparison/known_detectors.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -41,16 +41,8 @@ Drive drive_by(const LaneAnswer& answer, const Scene& scene) {
     return drive;
 }
 
-/// The default options, with the weights of the race if the detector takes weights.
-DetectorOptions options_of(const RaceDetector& detector, const std::optional<WeightsBytes>& weights) {
-    DetectorOptions options;
-    if (detector.takes_weights && weights) options.weights = *weights;
-    return options;
-}
-
-Driver detector_driver(const std::string& name, const DetectorOptions& options) {
-    return [detector = std::shared_ptr<LaneDetector>(make_detector(find_detector(name), options))](
-               const Frame& frame) {
+Driver detector_driver(const DetectorRecipe& recipe, const DetectorOptions& options) {
+    return [detector = std::shared_ptr<LaneDetector>(make_detector(recipe, options))](const Frame& frame) {
         const Scene scene = scene_of(frame);
         return drive_by(detector->detect(scene, {.time_limit_ms = kNoLimit_ms}), scene);
     };
@@ -116,60 +108,56 @@ Driver planner_driver(const std::string& detector, const DetectorOptions& detect
     };
 }
 
-bool is_of_library(const std::string& name) {
-    return std::ranges::any_of(detectors(),
-                               [&](const DetectorInfo& detector) { return detector.name == name; });
+bool is_of_library(const Method& method) {
+    return std::ranges::any_of(detector_recipes(),
+                               [&](const DetectorRecipe& recipe) { return &recipe == method.recipe; });
+}
+
+/// Throws InvalidInput if the method cannot drive.
+void require_driving(const Method& method, const std::string& text, WithPlanner with_planner) {
+    if (method.outside && !method.programs)
+        throw InvalidInput("--methods", "'" + text + "' cannot answer the frames of a race");
+    if (method.outside && with_planner == WithPlanner::only) {
+        throw InvalidInput("--planner",
+                           "'" + method.name + "' is a program from outside, which cannot have a planner");
+    }
+    if (!method.outside && with_planner != WithPlanner::no && !is_of_library(method))
+        throw InvalidInput("--planner", "'" + text + "' is not a detector of the library");
 }
 
 }  // namespace
 
-std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts, WithPlanner with_planner) {
-    std::vector<RaceDetector> all;
+std::vector<Racer> racers(const std::vector<std::string>& texts, WithPlanner with_planner) {
+    std::vector<Racer> all;
     for (const std::string& text : split_detectors(texts)) {
         if (text == "truth" || text == "none") {
-            all.push_back({text, text});
+            all.push_back({text});
             continue;
         }
-        if (const std::optional<OutsideDetector> outside = find_outside_detector(text)) {
-            if (!outside->is_program()) {
-                throw InvalidInput("--methods", "'" + text + "' cannot answer the frames of a race");
-            }
-            if (with_planner == WithPlanner::only) {
-                throw InvalidInput(
-                    "--planner",
-                    "'" + outside->name + "' is a program from outside, which cannot have a planner");
-            }
-            all.push_back({outside->name, outside->source, false, false,
-                           std::make_shared<OutsideProgramPool>(outside->name, outside->source)});
-            continue;
-        }
-        const bool takes_weights = find_detector(text).takes_weights();
-        if (with_planner != WithPlanner::only) all.push_back({text, text, false, takes_weights});
-        if (with_planner != WithPlanner::no) {
-            if (!is_of_library(text)) {
-                throw InvalidInput("--planner", "'" + text + "' is not a detector of the library");
-            }
-            all.push_back({text + "+planner", text, true, takes_weights});
-        }
+        const Method method = parse_method(text);
+        require_driving(method, text, with_planner);
+        if (method.outside || with_planner != WithPlanner::only) all.push_back({method.name, method});
+        if (!method.outside && with_planner != WithPlanner::no)
+            all.push_back({method.name + "+planner", method, true});
     }
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        for (std::size_t j = 0; j < i; ++j) {
-            if (all[i].name == all[j].name) {
-                throw InvalidInput("--methods", "'" + all[i].name + "' is there twice");
-            }
-        }
+    for (auto racer = all.begin(); racer != all.end(); ++racer) {
+        if (std::ranges::find(all.begin(), racer, racer->name, &Racer::name) != racer)
+            throw InvalidInput("--methods", "'" + racer->name + "' is there twice");
     }
     return all;
 }
 
-Driver make_driver(const RaceDetector& detector, const RaceCourse& course, const RaceOptions& options,
+Driver make_driver(const Racer& racer, const RaceCourse& course, const RaceOptions& options,
                    const std::optional<WeightsBytes>& weights) {
-    if (detector.programs) return outside_driver(detector.programs);
-    if (detector.detector == "truth") return truth_driver(course, options.laps);
-    if (detector.detector == "none") return [](const Frame& /*frame*/) { return Drive{}; };
-    const DetectorOptions detector_options = options_of(detector, weights);
-    if (detector.has_planner) return planner_driver(detector.detector, detector_options, course, options);
-    return detector_driver(detector.detector, detector_options);
+    if (!racer.method) {
+        if (racer.name == "truth") return truth_driver(course, options.laps);
+        return [](const Frame& /*frame*/) { return Drive{}; };
+    }
+    if (racer.method->programs) return outside_driver(racer.method->programs);
+    DetectorOptions detector_options;
+    if (racer.takes_weights() && weights) detector_options.weights = *weights;
+    if (racer.has_planner) return planner_driver(racer.method->name, detector_options, course, options);
+    return detector_driver(*racer.method->recipe, detector_options);
 }
 
 }  // namespace conelane::experiments

@@ -5,12 +5,12 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
+#include "evaluation/checking/answer_check.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/scenes/scene_set.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/comparison/answer_check.hpp"
-#include "experiments/comparison/known_detectors.hpp"
-#include "experiments/comparison/runner.hpp"
+#include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
@@ -38,8 +38,8 @@ namespace conelane::experiments {
 namespace {
 
 std::unique_ptr<LaneDetector> made(const std::string& name, const OptimalityOptions& options) {
-    const KnownDetector& detector = find_detector(name);
-    return make_detector(detector, options_used_by(detector, {{}, {}, options.nearest}));
+    const DetectorRecipe& recipe = *find_method(name).recipe;
+    return make_detector(recipe, options_used_by(recipe, {{}, {}, options.nearest}));
 }
 
 constexpr DetectionLimits kWholeSearch{std::numeric_limits<double>::infinity(), true};
@@ -465,7 +465,7 @@ std::vector<OptimalityRow> optimality_rows(std::span<const AnnotatedScene> scene
                                            const TrackBoundariesByName& tracks,
                                            const OptimalityOptions& options) {
     for (const std::string& name : {options.detector, options.beside}) {
-        if (!name.empty()) (void)find_detector(name);
+        if (!name.empty()) (void)find_method(name);
     }
     const std::size_t costs = options.costs.size();
     const std::vector<std::size_t> starts = lap_starts(scenes);

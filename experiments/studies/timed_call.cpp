@@ -2,16 +2,15 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "experiments/comparison/known_detectors.hpp"
+#include "experiments/methods/method.hpp"
 #include "solvers/registry.hpp"
 
-#include <algorithm>
 #include <memory>
 
 namespace conelane::experiments {
 namespace {
 
-TimedCall call_of(const KnownDetector& known) {
+TimedCall call_of(const DetectorRecipe& known) {
     const std::shared_ptr<LaneDetector> detector = make_detector(known);
     return {std::string(known.name), [detector](const Scene& scene, double time_limit_ms) {
                 const LaneAnswer answer = detector->detect(scene, {.time_limit_ms = time_limit_ms});
@@ -35,10 +34,10 @@ TimedCall call_of(const RldSolverEntry& entry) {
 std::vector<TimedCall> timed_calls(std::span<const std::string> names) {
     std::vector<TimedCall> calls;
     for (const std::string& name : names) {
-        const auto detector = std::ranges::find(known_detectors(), name, &KnownDetector::name);
+        const Method* const method = known_method(name);
         const RldSolverEntry* const solver = find_rld_solver(name);
-        if (detector != known_detectors().end()) {
-            calls.push_back(call_of(*detector));
+        if (method != nullptr) {
+            calls.push_back(call_of(*method->recipe));
         } else if (solver != nullptr) {
             calls.push_back(call_of(*solver));
         } else {

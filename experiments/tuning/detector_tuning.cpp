@@ -2,13 +2,13 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "evaluation/files/known_keys.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
-#include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -29,22 +29,6 @@ constexpr double kFirstStep = 0.25;
 constexpr double kLastStep = 0.025;
 /// Share of the parameters that one step changes.
 constexpr double kMovedShare = 0.4;
-
-template <typename Parameters>
-TunableDetector tunable(std::string_view name, std::span<const ParameterField<Parameters>> fields,
-                        std::unique_ptr<LaneDetector> (*make)(const Parameters&)) {
-    TunableDetector detector{name, {}, [fields, make](std::span<const double> values) {
-                                 Parameters parameters;
-                                 for (std::size_t i = 0; i < fields.size(); ++i)
-                                     parameters.*fields[i].value = values[i];
-                                 return make(parameters);
-                             }};
-    for (const ParameterField<Parameters>& field : fields) {
-        detector.parameters.push_back(
-            {field.key, field.lowest, field.highest, field.logarithmic, Parameters{}.*field.value});
-    }
-    return detector;
-}
 
 /// Four significant digits: short numbers in files, and the same on every machine, although logarithms differ
 /// in the last bits.
@@ -67,17 +51,17 @@ double share_of(const TunableParameter& parameter, double value) {
                : (value - parameter.lowest) / (parameter.highest - parameter.lowest);
 }
 
-std::vector<double> anywhere(const TunableDetector& detector, boost::random::mt19937_64& random) {
+std::vector<double> anywhere(std::span<const TunableParameter> parameters,
+                             boost::random::mt19937_64& random) {
     boost::random::uniform_01<double> uniform;
     std::vector<double> values;
-    for (const TunableParameter& parameter : detector.parameters)
-        values.push_back(at(parameter, uniform(random)));
+    for (const TunableParameter& parameter : parameters) values.push_back(at(parameter, uniform(random)));
     return values;
 }
 
 /// Changes some of the values, at least one, by about `step` of their ranges.
-std::vector<double> nearby(const TunableDetector& detector, std::vector<double> values, double step,
-                           boost::random::mt19937_64& random) {
+std::vector<double> nearby(std::span<const TunableParameter> parameters, std::vector<double> values,
+                           double step, boost::random::mt19937_64& random) {
     boost::random::uniform_01<double> uniform;
     boost::random::normal_distribution<double> normal(0.0, step);
     const std::size_t always =
@@ -85,37 +69,18 @@ std::vector<double> nearby(const TunableDetector& detector, std::vector<double> 
     for (std::size_t i = 0; i < values.size(); ++i) {
         const bool moved = uniform(random) < kMovedShare || i == always;
         const double change = normal(random);
-        const TunableParameter& parameter = detector.parameters[i];
-        if (moved) values[i] = at(parameter, share_of(parameter, values[i]) + change);
+        if (moved) values[i] = at(parameters[i], share_of(parameters[i], values[i]) + change);
     }
     return values;
 }
 
 }  // namespace
 
-const std::vector<TunableDetector>& tunable_detectors() {
-    static const std::vector<TunableDetector> kDetectors{
-        tunable("delaunay-beam", delaunay_beam_fields(), make_delaunay_beam_detector),
-        tunable("astar-lane", astar_lane_fields(), make_astar_lane_detector)};
-    return kDetectors;
-}
-
-const TunableDetector& find_tunable_detector(std::string_view name) {
-    const auto detector = std::ranges::find(tunable_detectors(), name, &TunableDetector::name);
-    if (detector != tunable_detectors().end()) return *detector;
-    std::string names;
-    for (const TunableDetector& known : tunable_detectors()) {
-        names += (names.empty() ? "" : ", ") + std::string(known.name);
-    }
-    throw InvalidInput("method",
-                       fmt::format("'{}' has no parameters for this command, only {} have", name, names));
-}
-
-DetectorFigure evaluate(const TunableDetector& detector, std::span<const double> values, const SceneSet& set,
+DetectorFigure evaluate(const DetectorRecipe& recipe, std::span<const double> values, const SceneSet& set,
                         unsigned threads) {
     std::vector<SceneScore> scores(set.scenes.size());
     oneapi::tbb::enumerable_thread_specific<std::unique_ptr<LaneDetector>> detectors(
-        [&] { return detector.make(values); });
+        [&] { return recipe.tuned()->make(values); });
     oneapi::tbb::task_arena arena(
         std::min(static_cast<int>(threads), oneapi::tbb::info::default_concurrency()));
     arena.execute([&] {
@@ -142,12 +107,15 @@ DetectorFigure evaluate(const TunableDetector& detector, std::span<const double>
     return figure;
 }
 
-TunedDetector tune_detector(const TunableDetector& detector, const SceneSet& set,
-                            const DetectorTuningOptions& options, const std::function<void()>& advance) {
-    boost::random::mt19937_64 random = generator_of(std::string(detector.name), options.seed);
-    TunedDetector best;
-    for (const TunableParameter& parameter : detector.parameters) best.values.push_back(parameter.start);
-    best.figure = best.figure_of_start = evaluate(detector, best.values, set, options.threads);
+TuningResult tune_detector(const DetectorRecipe& recipe, const SceneSet& set,
+                           const DetectorTuningOptions& options, const std::function<void()>& advance) {
+    boost::random::mt19937_64 random = generator_of(std::string(recipe.name), options.seed);
+    const std::vector<TunableParameter> parameters = recipe.tuned()->parameters();
+    TuningResult best;
+    best.values = options.start;
+    if (best.values.empty())
+        std::ranges::transform(parameters, std::back_inserter(best.values), &TunableParameter::start);
+    best.figure = best.figure_of_start = evaluate(recipe, best.values, set, options.threads);
     if (advance) advance();
     const auto everywhere = static_cast<std::size_t>(kEverywhere * static_cast<double>(options.evaluations));
     for (std::size_t i = 1; i < options.evaluations; ++i) {
@@ -156,8 +124,8 @@ TunedDetector tune_detector(const TunableDetector& detector, const SceneSet& set
                                                      static_cast<double>(options.evaluations - everywhere);
         const double step = kFirstStep * std::pow(kLastStep / kFirstStep, progress);
         std::vector<double> values =
-            i < everywhere ? anywhere(detector, random) : nearby(detector, best.values, step, random);
-        const DetectorFigure figure = evaluate(detector, values, set, options.threads);
+            i < everywhere ? anywhere(parameters, random) : nearby(parameters, best.values, step, random);
+        const DetectorFigure figure = evaluate(recipe, values, set, options.threads);
         if (figure.value() > best.figure.value()) {
             best.values = std::move(values);
             best.figure = figure;
@@ -167,12 +135,26 @@ TunedDetector tune_detector(const TunableDetector& detector, const SceneSet& set
     return best;
 }
 
-std::string to_json_text(const TunableDetector& detector, std::span<const double> values) {
+std::string to_json_text(const DetectorRecipe& recipe, std::span<const double> values) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < detector.parameters.size(); ++i) {
-        json[std::string(detector.parameters[i].key)] = values[i];
-    }
+    auto value = values.begin();
+    for (const TunableParameter& parameter : recipe.tuned()->parameters())
+        json[std::string(parameter.key)] = *value++;
     return json.dump(2) + "\n";
+}
+
+std::vector<double> parse_values(const DetectorRecipe& recipe, std::string_view text,
+                                 const std::filesystem::path& file) {
+    std::vector<double> values;
+    std::vector<std::string_view> keys;
+    with_json_text(text, file, [&](const JsonNode& json) {
+        for (const TunableParameter& parameter : recipe.tuned()->parameters()) {
+            values.push_back(json.member(parameter.key).number_in(parameter.lowest, parameter.highest));
+            keys.push_back(parameter.key);
+        }
+        require_known_keys(json, keys);
+    });
+    return values;
 }
 
 }  // namespace conelane::experiments

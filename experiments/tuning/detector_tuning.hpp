@@ -1,41 +1,18 @@
 #pragma once
 
-#include "conelane/lane_detector.hpp"
+#include "detectors/recipe.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace conelane::experiments {
-
-/// A number that tuning changes.
-struct TunableParameter {
-    std::string_view key;
-    double lowest;
-    double highest;
-    bool logarithmic;  ///< equal steps are equal ratios
-    double start;      ///< set by hand, so independent of the courses that a tuning holds out
-};
-
-/// A detector whose parameters can be tuned without knowledge of their meaning.
-struct TunableDetector {
-    std::string_view name;
-    std::vector<TunableParameter> parameters;
-    /// A detector of these values, in the order of `parameters`.
-    std::function<std::unique_ptr<LaneDetector>(std::span<const double>)> make;
-};
-
-/// All of them: delaunay-beam and astar-lane.
-[[nodiscard]] const std::vector<TunableDetector>& tunable_detectors();
-
-/// Throws InvalidInput that lists the names for an unknown name.
-[[nodiscard]] const TunableDetector& find_tunable_detector(std::string_view name);
 
 /// Figures of values on scenes. More often usable is better; if equal, higher IoU is better.
 struct DetectorFigure {
@@ -48,17 +25,19 @@ struct DetectorFigure {
     [[nodiscard]] double value() const { return usable + 0.1 * iou; }
 };
 
-/// Answers every scene that counts, without a limit of time. The same for any number of threads.
-[[nodiscard]] DetectorFigure evaluate(const TunableDetector& detector, std::span<const double> values,
+/// Answers every scene that counts by the tuned detector of these values, without a limit of time. The same
+/// for any number of threads.
+[[nodiscard]] DetectorFigure evaluate(const DetectorRecipe& recipe, std::span<const double> values,
                                       const SceneSet& set, unsigned threads);
 
 struct DetectorTuningOptions {
     std::size_t evaluations = 100;  ///< at least one, the start
     std::uint64_t seed = 0;
     unsigned threads = 1;
+    std::vector<double> start = {};  ///< empty: the values set by hand
 };
 
-struct TunedDetector {
+struct TuningResult {
     std::vector<double> values;  ///< four significant digits
     DetectorFigure figure;
     DetectorFigure figure_of_start;
@@ -67,12 +46,15 @@ struct TunedDetector {
 /// Random search: the start, then points drawn uniformly from the ranges for two fifths of the evaluations,
 /// then points around the best so far in steps that shrink from a quarter of each range to a fortieth. The
 /// best point evaluated is the answer. The same scenes, seed and options give the same answer. `advance` is
-/// called after each evaluation.
-[[nodiscard]] TunedDetector tune_detector(const TunableDetector& detector, const SceneSet& set,
-                                          const DetectorTuningOptions& options,
-                                          const std::function<void()>& advance = {});
+/// called after each evaluation. Precondition: the detector is tuned.
+[[nodiscard]] TuningResult tune_detector(const DetectorRecipe& recipe, const SceneSet& set,
+                                         const DetectorTuningOptions& options,
+                                         const std::function<void()>& advance = {});
 
-/// One flat JSON object, as the parameter files of detectors are.
-[[nodiscard]] std::string to_json_text(const TunableDetector& detector, std::span<const double> values);
+/// The parameter file of a tuned detector: one flat JSON object with a number for each parameter.
+[[nodiscard]] std::string to_json_text(const DetectorRecipe& recipe, std::span<const double> values);
+/// The values in such a text. Throws InputError naming file and key if one is missing or out of its range.
+[[nodiscard]] std::vector<double> parse_values(const DetectorRecipe& recipe, std::string_view text,
+                                               const std::filesystem::path& file);
 
 }  // namespace conelane::experiments

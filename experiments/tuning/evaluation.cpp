@@ -3,7 +3,6 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scenes/ground_truth.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "experiments/comparison/runner.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>

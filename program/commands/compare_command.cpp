@@ -130,9 +130,7 @@ void compare_and_print(CompareOptions& options) {
         for (const std::string& name : generated_track_names())
             comparison.tracks.push_back("generated:" + name);
     }
-    const bool any_rld = std::ranges::any_of(comparison.detectors, [](const ComparedDetector& compared) {
-        return compared.outside ? compared.outside->is_solver() : find_detector(compared.name).is_rld();
-    });
+    const bool any_rld = std::ranges::any_of(comparison.methods, &Method::is_rld);
     if (!any_rld) options.parameters.require_not_given("these methods have");
     options.parameters.apply_to(comparison.run.detector);
     comparison.scenes.threads = comparison.run.threads;
@@ -166,7 +164,7 @@ void add_compare_command(CLI::App& program) {
         if (options->is_by_size) sizes.assign(options->sizes.begin(), options->sizes.end());
         for (const std::string& detector : split_detectors(options->detectors)) {
             for (const std::optional<std::size_t>& size : sizes)
-                options->comparison.detectors.push_back(parse_compared_detector(detector, size));
+                options->comparison.methods.push_back(parse_method(detector, size));
         }
         compare_and_print(*options);
     });

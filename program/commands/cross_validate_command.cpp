@@ -1,4 +1,3 @@
-#include "evaluation/outside/outside_detector.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
@@ -32,7 +31,7 @@ void run(CrossValidateOptions& options) {
     CrossValidationOptions& run = options.run;
     run.families = parse_families(options.families);
     for (const std::string& text : split_detectors(options.detectors))
-        run.comparison.detectors.push_back(parse_compared_detector(text));
+        run.comparison.methods.push_back(parse_method(text));
     SceneOptions& learned = run.learning.scenes;
     learned.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     learned.ranges_m = {30.0, 50.0};

@@ -4,9 +4,7 @@
 #include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
-#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
@@ -33,11 +31,12 @@ namespace {
 constexpr const char* kStandardStream = "-";
 
 struct DetectOptions {
-    std::string detector;
+    std::string method;
     std::string scenes;
     std::string out;
     std::string weights;  ///< empty: the shipped ones
     ParameterSource parameters;
+    std::optional<std::size_t> nearest;
     RunOptions run;
 };
 
@@ -65,43 +64,31 @@ class LaneSink {
     AnswerErrors errors_;
 };
 
-/// A detector and the name in its answers.
-struct Answering {
-    std::string name;
-    DetectorMaker make;
-};
-Answering detector_of(DetectOptions& options) {
-    const auto outside = find_outside_detector(options.detector);
-    const auto refuse_weights = [&options](const std::string& who) {
-        if (options.weights.empty()) return;
-        throw InvalidInput("--weights", who + " does not take them: only front and front-warm do");
-    };
-    if (!outside) {
-        const KnownDetector& detector = find_detector(options.detector);
-        if (!detector.is_rld()) options.parameters.require_not_given("'" + options.detector + "' has");
-        if (!detector.takes_weights()) refuse_weights("'" + options.detector + "'");
-        if (!options.weights.empty()) {
-            // Read once and before the work, so that errors in them are reported at once.
-            options.run.detector.weights = parsed_file(options.weights, [](std::string text) {
-                (void)parse_front_weights(text);
-                return WeightsBytes{std::move(text)};
-            });
-        }
-        return {std::string(detector.name), maker_of(detector, options.run)};
-    }
-    if (outside->is_lanes_file())
+/// The method, and into the options what it takes of them.
+Method method_of(DetectOptions& options) {
+    options.parameters.apply_to(options.run.detector);
+    Method method = parse_method(options.method);
+    if (method.is_lanes_file())
         throw InvalidInput("--method",
-                           "'" + options.detector + "' is a finished lanes file: there is nothing to detect");
-    refuse_weights("the program '" + outside->name + "'");
-    if (outside->is_solver()) return {outside->name, maker_of_solver(*outside, options.run)};
-    options.parameters.require_not_given("the program '" + outside->name + "' has");
-    return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
+                           "'" + options.method + "' is a finished lanes file: there is nothing to detect");
+    method.nearest = options.nearest;
+    const std::string who = (method.outside ? "the program '" : "'") + method.name + "'";
+    if (!method.is_rld()) options.parameters.require_not_given(who + " has");
+    if (options.weights.empty()) return method;
+    if (!method.takes_weights())
+        throw InvalidInput("--weights", who + " does not take them: only front and front-warm do");
+    // Read once and before the work, so that errors in them are reported at once.
+    options.run.detector.weights = parsed_file(options.weights, [](std::string text) {
+        (void)parse_front_weights(text);
+        return WeightsBytes{std::move(text)};
+    });
+    return method;
 }
 
 /// One scene after another. Nothing is answered untimed first, because no scene is known in advance.
-void detect_streamed(const Answering& detector, const DetectOptions& options) {
+void detect_streamed(const Method& method, const DetectOptions& options) {
     if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
-    const std::unique_ptr<TimedDetector> timed = detector.make("");
+    const std::unique_ptr<TimedDetector> timed = method.maker(options.run)("");
     LaneSink sink(options.out);
     if (options.scenes == kStandardStream) {
         for_each_scene_line(std::cin, [&](const SceneLine& line) {
@@ -110,7 +97,7 @@ void detect_streamed(const Answering& detector, const DetectOptions& options) {
             } else if (line.scene) {
                 sink.put(timed->answer(line.scene->scene));
             } else {
-                LaneRecord wrong{std::to_string(line.number), detector.name, {}, 0.0, {}};
+                LaneRecord wrong{std::to_string(line.number), method.name, {}, 0.0, {}};
                 wrong.answer.status = LaneStatus::error;
                 wrong.answer.message = line.fault;
                 sink.put(wrong);
@@ -127,14 +114,13 @@ void detect_streamed(const Answering& detector, const DetectOptions& options) {
 }
 
 void detect(DetectOptions& options) {
-    options.parameters.apply_to(options.run.detector);
-    const Answering detector = detector_of(options);
+    const Method method = method_of(options);
     if (options.scenes == kStandardStream || options.out == kStandardStream) {
-        detect_streamed(detector, options);
+        detect_streamed(method, options);
         return;
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    const std::vector<LaneRecord> lanes = run(detector.name, detector.make, scenes, options.run);
+    const std::vector<LaneRecord> lanes = run(method, scenes, options.run);
     write_lanes(options.out, lanes);
     AnswerErrors errors;
     for (const LaneRecord& record : lanes) add_answer_of(errors, record);
@@ -160,12 +146,12 @@ void add_methods_command(CLI::App& program) {
     command.add_flag("--solvers", *solvers, "the RLD solvers instead")->excludes("--all");
     command.callback([all, solvers] {
         if (*solvers) return list_solvers();
-        for (const KnownDetector& detector : known_detectors()) {
-            if (detector.is_ablation && !*all) continue;
-            const ConeSet set = cone_set(detector, {});
+        for (const Method& method : known_methods()) {
+            if (method.is_ablation && !*all) continue;
+            const ConeSet set = cone_set(*method.recipe, {});
             std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
             if (set.context) cones += fmt::format(" of {}", *set.context);
-            fmt::print("{:<16} cones: {:<16} {}\n", detector.name, cones, detector.description);
+            fmt::print("{:<16} cones: {:<16} {}\n", method.name, cones, method.recipe->description);
         }
     });
 }
@@ -179,7 +165,7 @@ void add_detect_command(CLI::App& program) {
     auto options = std::make_shared<DetectOptions>();
     options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command
-        .add_option("--method", options->detector,
+        .add_option("--method", options->method,
                     "see `conelane methods`, or exec:NAME=COMMAND for any program (docs/from-outside.md)")
         ->required();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; - reads standard input line by line")
@@ -187,7 +173,7 @@ void add_detect_command(CLI::App& program) {
     add_output_option(command, "--out", options->out,
                       "*.lanes.jsonl; - writes each line to standard output at once", true)
         ->required();
-    add_nearest_option(command, options->run.detector.nearest, "cone-set size instead of the method's own");
+    add_nearest_option(command, options->nearest, "cone-set size instead of the method's own");
     add_time_limit_option(command, options->run.limits.time_limit_ms);
     add_threads_option(command, options->run.threads,
                        "number of threads; with more than one, latencies are disturbed");

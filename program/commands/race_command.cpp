@@ -6,7 +6,7 @@
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/tracks/track_spec.hpp"
-#include "experiments/cross_validation/learners.hpp"
+#include "experiments/methods/learners.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
@@ -145,7 +145,7 @@ std::vector<WeightedCourse> courses_of(const Options& options, std::optional<Mis
 /// A race and its input.
 struct Entry {
     const WeightedCourse* course;
-    const RaceDetector* detector;
+    const Racer* racer;
 };
 
 void run_all(const Options& options, const std::vector<Entry>& entries, std::vector<Heat>& heats) {
@@ -164,7 +164,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 const auto& [course, weights] = *entries[i].course;
                 race_options.with_any_map = !course.closed && heat.detector != "truth";
                 heat.result = race(course, race_options,
-                                   make_driver(*entries[i].detector, course, race_options,
+                                   make_driver(*entries[i].racer, course, race_options,
                                                weights ? std::optional(*weights) : std::nullopt));
                 // Keeps only the races that failed, and the first one, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
@@ -185,9 +185,9 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
     if (failure) std::rethrow_exception(failure);
 }
 
-nlohmann::ordered_json parameters_of(const Options& options, const std::vector<RaceDetector>& detectors) {
+nlohmann::ordered_json parameters_of(const Options& options, const std::vector<Racer>& racers) {
     std::vector<std::string> names;
-    for (const RaceDetector& detector : detectors) names.push_back(detector.name);
+    for (const Racer& racer : racers) names.push_back(racer.name);
     const Provenance origin = provenance();
     return {{"commit", origin.commit},
             {"compiler", origin.compiler},
@@ -225,9 +225,9 @@ class Outputs {
           replay_(folder / "replay.jsonl"),
           times_(folder / "times.txt") {}
 
-    void write(const Options& options, const std::vector<RaceDetector>& detectors,
-               const std::vector<Entry>& entries, const std::vector<Heat>& heats) {
-        nlohmann::ordered_json json = parameters_of(options, detectors);
+    void write(const Options& options, const std::vector<Racer>& racers, const std::vector<Entry>& entries,
+               const std::vector<Heat>& heats) {
+        nlohmann::ordered_json json = parameters_of(options, racers);
         json["races"] = nlohmann::ordered_json::array();
         for (std::size_t i = 0; i < heats.size(); ++i) {
             json["races"].push_back(heat_json(heats[i]));
@@ -281,12 +281,11 @@ void run_races(Options& options) {
             throw InvalidInput("--seed", fmt::format("{} is there twice", seed));
         }
     }
-    const std::vector<RaceDetector> detectors =
-        race_detectors(options.detectors, options.both      ? WithPlanner::both
-                                          : options.planner ? WithPlanner::only
-                                                            : WithPlanner::no);
+    const std::vector<Racer> all = racers(options.detectors, options.both      ? WithPlanner::both
+                                                             : options.planner ? WithPlanner::only
+                                                                               : WithPlanner::no);
     const bool any_weights = !options.weights.empty() || !options.folds.empty();
-    if (any_weights && std::ranges::none_of(detectors, &RaceDetector::takes_weights)) {
+    if (any_weights && std::ranges::none_of(all, &Racer::takes_weights)) {
         throw InvalidInput(options.weights.empty() ? "--folds" : "--weights",
                            "none of the methods takes weights: only front and front-warm do");
     }
@@ -295,12 +294,12 @@ void run_races(Options& options) {
     std::vector<Entry> entries;
     const std::size_t distinct_courses = options.vary ? 1 : courses.size();
     for (std::size_t first = 0; first < distinct_courses; ++first) {
-        for (const RaceDetector& detector : detectors) {
+        for (const Racer& racer : all) {
             for (const double rate : options.rates) {
                 for (std::size_t i = 0; i < options.seeds.size(); ++i) {
                     const WeightedCourse& course = courses[options.vary ? i : first];
-                    heats.push_back({course.course.name, detector.name, rate, options.seeds[i]});
-                    entries.push_back({&course, &detector});
+                    heats.push_back({course.course.name, racer.name, rate, options.seeds[i]});
+                    entries.push_back({&course, &racer});
                 }
             }
         }
@@ -308,7 +307,7 @@ void run_races(Options& options) {
     make_folder(options.out);
     Outputs outputs(options.out);
     run_all(options, entries, heats);
-    outputs.write(options, detectors, entries, heats);
+    outputs.write(options, all, entries, heats);
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/outside/finished_lanes.hpp"
-#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scoring/score_table.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/comparison/summary.hpp"
+#include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 
@@ -61,11 +61,11 @@ std::vector<LanesFile> read_all(const ScoreOptions& options, std::span<const Ann
         }
     }
     for (const std::string& text : split_detectors(options.detectors)) {
-        auto detector = find_outside_detector(text);
-        if (!detector || !detector->is_lanes_file())
+        if (!text.starts_with("lanes:"))
             throw InvalidInput("--methods", "'" + text + "' is not of the form lanes:NAME=FILE");
-        std::vector<LaneRecord> records = read_finished_lanes(*detector, scenes);
-        all.push_back({detector->source, std::move(detector), std::move(records)});
+        Method method = parse_method(text);
+        std::vector<LaneRecord> records = read_finished_lanes(*method.outside, scenes);
+        all.push_back({method.outside->source, std::move(method.outside), std::move(records)});
     }
     return all;
 }

@@ -6,6 +6,7 @@
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_options_json.hpp"
 #include "evaluation/scenes/scene_set.hpp"
+#include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
@@ -182,16 +183,16 @@ ordered_json describe(const DetectorFigure& figure) {
 
 /// Tunes a detector with parameters of its own, for usable lanes.
 void tune_method(TuneOptions& options) {
-    const TunableDetector& detector = find_tunable_detector(options.detector);
+    const DetectorRecipe& recipe = find_tunable(options.detector);
     options.scenes.threads = options.evaluation.threads;
     const DetectorTuningOptions tuning{.evaluations = options.tuner.evaluations,
                                        .seed = options.scenes.seed,
                                        .threads = options.evaluation.threads};
     const SceneSet set = make_scene_set(options.tracks, options.scenes);
-    TunedDetector tuned;
+    TuningResult tuned;
     {
         Progress progress("tune " + options.detector, tuning.evaluations);
-        tuned = tune_detector(detector, set, tuning, [&] { progress.advance(); });
+        tuned = tune_detector(recipe, set, tuning, [&] { progress.advance(); });
     }
     ordered_json record{{"method", options.detector},
                         {"commit", provenance().commit},
@@ -205,7 +206,7 @@ void tune_method(TuneOptions& options) {
     AtomicFile record_file(record_path(options.out));
     record_file.stream() << record.dump(2) << '\n';
     AtomicFile parameters(options.out);
-    parameters.stream() << to_json_text(detector, tuned.values);
+    parameters.stream() << to_json_text(recipe, tuned.values);
     commit_together(std::array{&record_file, &parameters});
     const auto text = [](const DetectorFigure& figure) {
         return fmt::format("{:.1f} % usable, IoU {:.1f} %", 100.0 * figure.usable, 100.0 * figure.iou);
@@ -278,10 +279,10 @@ void add_tune_command(CLI::App& program) {
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 6.6;
-    command.add_option(
-        "--method", options->detector,
-        "delaunay-beam or astar-lane, tuned for usable lanes; RLD without it, to which the options "
-        "from --objective to --most-nodes and from --folds to --log belong");
+    command.add_option("--method", options->detector,
+                       fmt::format("{}, tuned for usable lanes; RLD without it, to which the options "
+                                   "from --objective to --most-nodes and from --folds to --log belong",
+                                   fmt::join(tunable_names(), " or ")));
     command
         .add_option("--tracks", options->tracks,
                     "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")

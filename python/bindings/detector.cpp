@@ -4,7 +4,6 @@
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -19,11 +18,6 @@
 
 namespace conelane::python {
 namespace {
-
-const DetectorRecipe* find_recipe(const std::string& name) {
-    const auto recipe = std::ranges::find(detector_recipes(), name, &DetectorRecipe::name);
-    return recipe == detector_recipes().end() ? nullptr : &*recipe;
-}
 
 /// str or os.PathLike: a file; bytes: its content.
 std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) {

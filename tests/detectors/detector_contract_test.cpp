@@ -3,7 +3,7 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "experiments/comparison/known_detectors.hpp"
+#include "experiments/methods/method.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -28,8 +28,8 @@ bool is_in_library(std::string_view name) {
 std::vector<std::string> names() {
     std::vector<std::string> all;
     for (const DetectorInfo& detector : detectors()) all.emplace_back(detector.name);
-    for (const experiments::KnownDetector& detector : experiments::known_detectors()) {
-        if (!is_in_library(detector.name)) all.emplace_back(detector.name);
+    for (const experiments::Method& method : experiments::known_methods()) {
+        if (!is_in_library(method.name)) all.emplace_back(method.name);
     }
     return all;
 }
@@ -126,8 +126,9 @@ class DetectorContract : public testing::TestWithParam<std::string> {
     /// Whether the detector answers with a boundary that is seen alone.
     static bool answers_one_boundary() { return GetParam().starts_with("front"); }
     static std::unique_ptr<LaneDetector> make(const DetectorOptions& options = {}) {
-        return is_in_library(GetParam()) ? make_detector(GetParam(), options)
-                                         : make_detector(experiments::find_detector(GetParam()), options);
+        return is_in_library(GetParam())
+                   ? make_detector(GetParam(), options)
+                   : make_detector(*experiments::find_method(GetParam()).recipe, options);
     }
     static LaneAnswer detect(LaneDetector& detector, const Scene& scene, const DetectionLimits& limits) {
         LaneAnswer answer;
@@ -408,7 +409,7 @@ TEST(Detectors, AreKnownByNamesOfTheirOwnThatAnErrorLists) {
 
 TEST(Detectors, AreAllDetectors) {
     for (const DetectorInfo& detector : detectors()) {
-        EXPECT_NO_THROW((void)experiments::find_detector(detector.name)) << detector.name;
+        EXPECT_NO_THROW((void)experiments::find_method(detector.name)) << detector.name;
     }
 }
 

@@ -2,7 +2,7 @@
 // it does with colors. They are compared with the detectors' answers.
 
 #include "conelane/detectors.hpp"
-#include "experiments/comparison/known_detectors.hpp"
+#include "experiments/methods/method.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"
@@ -10,7 +10,6 @@
 namespace conelane {
 namespace {
 
-using experiments::KnownDetector;
 using testing::AllOf;
 using testing::Contains;
 using testing::IsEmpty;
@@ -44,7 +43,7 @@ Scene painted_scene(std::uint64_t seed, Painted how) {
 }
 
 /// The number of scenes in which the lane differs from the lane without colors.
-int lanes_changed_by_color(const KnownDetector& known, const DetectorOptions& options = {}) {
+int lanes_changed_by_color(const DetectorRecipe& known, const DetectorOptions& options = {}) {
     int changed = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         std::vector<Lane> lanes;
@@ -57,7 +56,7 @@ int lanes_changed_by_color(const KnownDetector& known, const DetectorOptions& op
     return changed;
 }
 
-class DetectorRecipes : public testing::TestWithParam<const KnownDetector*> {};
+class DetectorRecipes : public testing::TestWithParam<const DetectorRecipe*> {};
 
 TEST_P(DetectorRecipes, SayWhetherLanesAreClosed) {
     const LaneAnswer answer =
@@ -84,9 +83,9 @@ TEST_P(DetectorRecipes, SayWhatColorsDo) {
     }
 }
 
-std::vector<const KnownDetector*> all() {
-    std::vector<const KnownDetector*> all;
-    for (const KnownDetector& known : experiments::known_detectors()) all.push_back(&known);
+std::vector<const DetectorRecipe*> all() {
+    std::vector<const DetectorRecipe*> all;
+    for (const experiments::Method& known : experiments::known_methods()) all.push_back(known.recipe);
     return all;
 }
 
@@ -106,14 +105,6 @@ TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParam
     EXPECT_THAT(training_courses("rld-learned"), AllOf(Contains("fsd_6"), Contains("kidney@4")));
     for (const char* const none : {"rld-pair", "rld-context", "clc-longest", "no detector"})
         EXPECT_THAT(training_courses(none), IsEmpty()) << none;
-}
-
-TEST(DetectorInfos, SayWhatTheRecipesSay) {
-    for (const DetectorInfo& info : detectors()) {
-        const KnownDetector& known = experiments::find_detector(info.name);
-        EXPECT_EQ(info.closed_lanes, known.closed_lanes);
-        EXPECT_EQ(info.color_use, known.color_use);
-    }
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // Transformed scenes have the same lane, for every detector of the library.
 
 #include "conelane/detectors.hpp"
-#include "detectors/baseline_parameters.hpp"
 #include "detectors/recipe.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "tests/support/metamorphic.hpp"
@@ -151,13 +150,16 @@ TEST(RldMetamorphic, FindsTheSameLaneAtAnotherScale) {
 TEST(DelaunayBeamMetamorphic, FindsTheSameLaneAtAnotherScale) {
     constexpr double kFactor = 0.9375;  // w_start may not be less
     const Change smaller{"Smaller", [](Scene scene) { return tests::scaled(std::move(scene), kFactor); }};
-    DelaunayBeamParameters parameters = tuned_delaunay_beam_parameters();
-    const auto detector = make_delaunay_beam_detector(parameters);
-    for (const auto& field : delaunay_beam_fields()) {
-        if (field.unit == "m") parameters.*field.value *= kFactor;
-        if (field.unit == "1/m^2") parameters.*field.value /= kFactor * kFactor;
+    const DetectorRecipe* const recipe = find_recipe("delaunay-beam");
+    std::vector<double> values = shipped_values(*recipe);
+    const auto detector = recipe->tuned()->make(values);
+    auto value = values.begin();
+    for (const TunableParameter& parameter : recipe->tuned()->parameters()) {
+        if (parameter.unit == "m") *value *= kFactor;
+        if (parameter.unit == "1/m^2") *value /= kFactor * kFactor;
+        ++value;
     }
-    const auto other = make_delaunay_beam_detector(parameters);
+    const auto other = recipe->tuned()->make(values);
     const Outcome outcome = compare(*detector, *other, "delaunay-beam", kAsItIs, smaller, false);
     EXPECT_GT(outcome.found, outcome.scenes * 3 / 4);
     EXPECT_EQ(outcome.different, 0U);

@@ -2,7 +2,7 @@
 
 #include "evaluation/scenes/scene_set.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "experiments/comparison/known_detectors.hpp"
+#include "experiments/methods/method.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/testing.hpp"
@@ -19,7 +19,7 @@ SceneSet lap(double rate, double range_m) {
 }
 
 std::size_t successes(const char* name, const SceneSet& set) {
-    const std::unique_ptr<LaneDetector> detector = make_detector(find_detector(name));
+    const std::unique_ptr<LaneDetector> detector = make_detector(name);
     std::size_t count = 0;
     for (const AnnotatedScene& scene : set.scenes) {
         const LaneAnswer answer = detector->detect(scene.scene, tests::kNoTimeLimit);

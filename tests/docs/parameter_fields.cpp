@@ -2,11 +2,12 @@
 // key, default, lowest, highest, unit, description. tests/docs/reference_pages makes parameters.md of it.
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/rld_parameters.hpp"
-#include "detectors/baseline_parameters.hpp"
+#include "detectors/recipe.hpp"
 
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -31,15 +32,15 @@ int main() {
         print("rld extra", field.key, defaults.*field.value, field.lowest, field.highest, field.unit,
               field.description);
     }
-    const auto print_baseline = [](std::string_view group, const auto& parameters, const auto& fields) {
-        for (const auto& field : fields) {
-            print(group, field.key, parameters.*field.value, field.lowest, field.highest, field.unit,
-                  field.description);
+    for (const conelane::DetectorRecipe& recipe : conelane::detector_recipes()) {
+        if (recipe.tuned() == nullptr) continue;
+        const std::vector<double> values = conelane::shipped_values(recipe);
+        auto value = values.begin();
+        for (const auto& field : recipe.tuned()->parameters()) {
+            print("tuned " + std::string(recipe.name), field.key, *value++, field.lowest, field.highest,
+                  field.unit, field.description);
         }
-    };
-    print_baseline("delaunay-beam", conelane::tuned_delaunay_beam_parameters(),
-                   conelane::delaunay_beam_fields());
-    print_baseline("astar-lane", conelane::tuned_astar_lane_parameters(), conelane::astar_lane_fields());
+    }
     // The columns of the shipped sets: group "set NAME".
     for (const std::string_view name : conelane::rld_parameter_set_names()) {
         const RldParameters set = *conelane::rld_parameter_set(name);

@@ -2,7 +2,7 @@
 // the limit, and its centre line.
 
 #include "conelane/drivable_lane.hpp"
-#include "experiments/comparison/known_detectors.hpp"
+#include "experiments/methods/method.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/fuzzed_scene.hpp"
 
@@ -21,7 +21,7 @@ namespace conelane::fuzz {
 namespace {
 
 /// Made once, because some read large tables.
-LaneDetector& made_detector(const experiments::KnownDetector& known) {
+LaneDetector& made_detector(const DetectorRecipe& known) {
     static std::map<std::string_view, std::unique_ptr<LaneDetector>> made;
     std::unique_ptr<LaneDetector>& entry = made[known.name];
     if (!entry) entry = make_detector(known);
@@ -98,9 +98,8 @@ void detect_on(FuzzedDataProvider& input) {
     constexpr double kLimits_ms[]{0.0, 0.5, 2.0, 5.0, 20.0};
     constexpr double kMaxSeconds =
         2.0;  // seconds of processor time under a sanitizer; the limits above are 0.02 s at most
-    const std::span<const experiments::KnownDetector> all = experiments::known_detectors();
-    const experiments::KnownDetector& known =
-        all[input.ConsumeIntegralInRange<std::size_t>(0, all.size() - 1)];
+    const std::span<const experiments::Method> all = experiments::known_methods();
+    const DetectorRecipe& known = *all[input.ConsumeIntegralInRange<std::size_t>(0, all.size() - 1)].recipe;
     LaneDetector& chosen = made_detector(known);
     chosen.reset();
     const int scenes = input.ConsumeIntegralInRange(1, 3);

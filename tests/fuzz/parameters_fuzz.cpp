@@ -2,12 +2,12 @@
 // cards of detectors, the record of a tuning, round trips of an echo, and the names of detectors from
 // outside.
 
-#include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
 #include "experiments/comparison/echo_floor.hpp"
-#include "experiments/comparison/known_detectors.hpp"
+#include "experiments/methods/method.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
+#include "experiments/tuning/detector_tuning.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
@@ -35,14 +35,16 @@ void read_all(std::string_view bytes) {
             }
         }
     });
-    answers([&] { (void)make_delaunay_beam_detector(parse_delaunay_beam_parameters(bytes, "input.json")); });
-    answers([&] { (void)make_astar_lane_detector(parse_astar_lane_parameters(bytes, "input.json")); });
+    for (const std::string_view name : experiments::tunable_names()) {
+        const DetectorRecipe& recipe = experiments::find_tunable(name);
+        answers([&] { (void)recipe.tuned()->make(experiments::parse_values(recipe, bytes, "input.json")); });
+    }
     answers([&] { (void)read_detector_card(file).summary(); });
     answers([&] { (void)experiments::read_echo_floor(file); });
     answers([&] { (void)experiments::read_tuning_record(file); });
     const std::string text(bytes);
     answers([&] { (void)outside_detectors_of_record(text); });
-    answers([&] { (void)experiments::find_outside_detector(text); });
+    answers([&] { (void)experiments::parse_method(text); });
     (void)split_detectors({text});
 }
 

@@ -23,7 +23,7 @@ set(tests_depends_on model solvers graph_search detectors evaluation experiments
 # Each folder, and each file that stands beside folders, without its ending: what stands later may include what stands before.
 set(layers_of_solvers/path_pair search_clock search_tuning path_pair_options graph bound primal frontier search path_pair_solver)
 set(layers_of_evaluation seeded_random files tracks scenes scoring outside checking)
-set(layers_of_experiments progress comparison options cross_check training tuning cross_validation instances
+set(layers_of_experiments progress training tuning methods comparison options cross_check cross_validation instances
                           studies race report benchmarks examples)
 set(layers_of_program commands main)
 set(layered solvers/path_pair evaluation experiments program)

@@ -7,8 +7,8 @@
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/results.hpp"
+#include "experiments/methods/method.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/random_scenes.hpp"
 

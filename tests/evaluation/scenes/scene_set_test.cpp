@@ -5,13 +5,10 @@
 #include "evaluation/scenes/degenerate_truth.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/tracks/track_spec.hpp"
-#include "experiments/comparison/runner.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
-
-using experiments::lap_starts;
 
 const std::vector<std::string> kTracks{"generated:circle", "generated:kidney@2"};
 

@@ -1,9 +1,8 @@
 // Verdicts of the independent checker on the answers of RLD detectors.
 
-#include "experiments/comparison/answer_check.hpp"
+#include "evaluation/checking/answer_check.hpp"
 
 #include "evaluation/scenes/scene_set.hpp"
-#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/straight_scene.hpp"
@@ -18,7 +17,7 @@ using testing::StartsWith;
 /// The answer of rld-pair on the straight lane, unchecked.
 LaneRecord answer_on(const AnnotatedScene& scene) {
     LaneRecord record{scene.scene.id, "rld-pair", {}, 1.0, {}};
-    record.answer = make_detector(find_detector("rld-pair"))->detect(scene.scene, tests::kNoTimeLimit);
+    record.answer = make_detector("rld-pair")->detect(scene.scene, tests::kNoTimeLimit);
     return record;
 }
 
@@ -92,7 +91,7 @@ TEST(CheckAnswer, ChecksALaneByTheDNearThatItNames) {
 
 TEST(CheckAnswer, ChecksTheUncutLaneOfALaneWithContext) {
     const AnnotatedScene scene = straight_scene();
-    const KnownDetector& detector = find_detector("rld-context");
+    const DetectorRecipe& detector = *find_method("rld-context").recipe;
     LaneRecord right{scene.scene.id, "rld-context",
                      make_detector(detector)->detect(scene.scene, tests::kNoTimeLimit), 1.0,
                      cone_set(detector, {}).nearest};
@@ -134,11 +133,11 @@ TEST(Run, ChecksRldAnswersOnTheirOwnConeSet) {
     for (const char* detector :
          {"rld-cbc", "rld-pair", "rld-context", "rld-shape", "rld-shape-context", "clc"}) {
         SCOPED_TRACE(detector);
-        const KnownDetector& entry = find_detector(detector);
+        const Method method = find_method(detector);
         std::size_t found = 0;
-        for (const LaneRecord& record : run(std::string(detector), maker_of(entry, {}), set.scenes, {})) {
+        for (const LaneRecord& record : run(method, set.scenes, {})) {
             EXPECT_NE(record.answer.status, LaneStatus::error) << record.answer.message;
-            EXPECT_EQ(record.checked, entry.is_rld() && record.answer.status == LaneStatus::found);
+            EXPECT_EQ(record.checked, method.is_rld() && record.answer.status == LaneStatus::found);
             if (record.answer.status == LaneStatus::found) ++found;
         }
         EXPECT_GT(found, set.scenes.size() / 2);

@@ -6,7 +6,7 @@
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "experiments/comparison/known_detectors.hpp"
+#include "experiments/methods/method.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/testing.hpp"
@@ -55,7 +55,8 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
         ASSERT_EQ(lanes.size(), scenes.size());
         for (std::size_t i = 0; i < scenes.size(); ++i) {
             const std::string fold = scenes[i].track == "circle" ? "a" : "b";
-            const DetectorMaker maker = find_learner(detector)->maker(path("cv/folds/" + fold), options);
+            const DetectorMaker maker =
+                find_method(detector).learned_maker(path("cv/folds/" + fold), options);
             EXPECT_EQ(maker(scenes[i].track)->answer(scenes[i].scene).answer.lane, lanes[i].answer.lane)
                 << scenes[i].scene.id;
         }

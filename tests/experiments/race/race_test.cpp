@@ -541,20 +541,20 @@ TEST(Drivers, ADetectorDrivesAGeneratedCourseWithAndWithoutIds) {
     for (const bool with_ids : {true, false}) {
         RaceOptions options = options_of("car");
         options.sight.with_ids = with_ids;
-        const RaceDetector detector = race_detectors({"front"}, WithPlanner::no).front();
-        const RaceResult result = race(kidney(), options, make_driver(detector, kidney(), options));
+        const Racer racer = racers({"front"}, WithPlanner::no).front();
+        const RaceResult result = race(kidney(), options, make_driver(racer, kidney(), options));
         EXPECT_EQ(to_string(result.end), "finished");
         EXPECT_EQ(result.wrong_unflagged, 0);
     }
 }
 
 TEST(Drivers, UnknownNamesAreRefused) {
-    EXPECT_THROW(static_cast<void>(race_detectors({"nobody"}, WithPlanner::no)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_detectors({"front,front"}, WithPlanner::no)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_detectors({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_detectors({"exec:a=b"}, WithPlanner::only)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_detectors({"clc-longest"}, WithPlanner::only)), InvalidInput);
-    const std::vector<RaceDetector> both = race_detectors({"truth,front"}, WithPlanner::both);
+    EXPECT_THROW(static_cast<void>(racers({"nobody"}, WithPlanner::no)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(racers({"front,front"}, WithPlanner::no)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(racers({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(racers({"exec:a=b"}, WithPlanner::only)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(racers({"clc-longest"}, WithPlanner::only)), InvalidInput);
+    const std::vector<Racer> both = racers({"truth,front"}, WithPlanner::both);
     ASSERT_EQ(both.size(), 3U);
     EXPECT_EQ(both[2].name, "front+planner");
 }

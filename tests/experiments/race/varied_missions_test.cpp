@@ -56,7 +56,7 @@ TEST_P(VariedMissions, TheTrueLineDrivesThem) {
 }
 
 TEST_P(VariedMissions, ThePlannerDrivesThemAndStopsBehindTheLine) {
-    const std::vector<RaceDetector> detectors = race_detectors({"front-warm"}, WithPlanner::only);
+    const Racer racer = racers({"front-warm"}, WithPlanner::only).front();
     // 1004: five inner cones in a row are missing. 18: only false positives determine the rotation about the
     // right circle. 47: at the start, two registrations are equally likely.
     for (const std::uint64_t seed : {18U, 47U, 1004U, 3U, 4U}) {
@@ -65,7 +65,7 @@ TEST_P(VariedMissions, ThePlannerDrivesThemAndStopsBehindTheLine) {
             RaceOptions options = options_of("car", seed);
             options.with_any_map = true;
             options.sight.false_positive_rate = rate;
-            const RaceResult result = race(course, options, make_driver(detectors.front(), course, options));
+            const RaceResult result = race(course, options, make_driver(racer, course, options));
             EXPECT_EQ(to_string(result.end), "finished") << seed << " " << rate;
             ASSERT_TRUE(result.stop_said_m) << seed;
             EXPECT_GE(*result.stop_said_m, 0.0) << seed;

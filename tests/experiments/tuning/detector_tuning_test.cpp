@@ -2,9 +2,9 @@
 
 #include "experiments/tuning/detector_tuning.hpp"
 
-#include "detectors/baseline_parameters.hpp"
-#include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/input_error.hpp"
+#include "experiments/methods/method.hpp"
+#include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/testing.hpp"
@@ -25,53 +25,72 @@ SceneSet few_scenes() {
 
 TEST(DetectorTuning, FindsBetterParametersAndTheSameOnesAgain) {
     const SceneSet set = few_scenes();
-    for (const TunableDetector& known : tunable_detectors()) {
-        SCOPED_TRACE(known.name);
+    for (const std::string_view name : tunable_names()) {
+        SCOPED_TRACE(name);
+        const DetectorRecipe& recipe = find_tunable(name);
+        const std::vector<TunableParameter> parameters = recipe.tuned()->parameters();
         // A bad start: the highest end of each range.
-        TunableDetector detector = known;
-        for (TunableParameter& parameter : detector.parameters) parameter.start = parameter.highest;
-        const TunedDetector tuned = tune_detector(detector, set, {.evaluations = 8, .seed = 2, .threads = 2});
+        DetectorTuningOptions options{.evaluations = 8, .seed = 2, .threads = 2};
+        for (const TunableParameter& parameter : parameters) options.start.push_back(parameter.highest);
+        const TuningResult tuned = tune_detector(recipe, set, options);
         EXPECT_GE(tuned.figure.value(), tuned.figure_of_start.value());
         EXPECT_GT(tuned.figure.usable, 0.0);
         EXPECT_EQ(tuned.figure.scenes, set.scenes.size());
-        const TunedDetector again = tune_detector(detector, set, {.evaluations = 8, .seed = 2, .threads = 1});
+        options.threads = 1;
+        const TuningResult again = tune_detector(recipe, set, options);
         EXPECT_EQ(again.values, tuned.values);
         EXPECT_EQ(again.figure.iou, tuned.figure.iou);
         for (std::size_t i = 0; i < tuned.values.size(); ++i) {
-            EXPECT_GE(tuned.values[i], detector.parameters[i].lowest) << detector.parameters[i].key;
-            EXPECT_LE(tuned.values[i], detector.parameters[i].highest) << detector.parameters[i].key;
+            EXPECT_GE(tuned.values[i], parameters[i].lowest) << parameters[i].key;
+            EXPECT_LE(tuned.values[i], parameters[i].highest) << parameters[i].key;
         }
     }
 }
 
+/// A value for each parameter: one of its members.
+std::vector<double> values_of(const DetectorRecipe& recipe, double TunableParameter::*member) {
+    std::vector<double> values;
+    for (const TunableParameter& parameter : recipe.tuned()->parameters())
+        values.push_back(parameter.*member);
+    return values;
+}
+
 TEST(DetectorTuning, ShippedParametersAreInTheirRanges) {
-    EXPECT_NO_THROW(validate(tuned_delaunay_beam_parameters()));
-    EXPECT_NO_THROW(validate(tuned_astar_lane_parameters()));
+    for (const std::string_view name : tunable_names()) {
+        const DetectorRecipe& recipe = find_tunable(name);
+        EXPECT_NO_THROW((void)recipe.tuned()->make(shipped_values(recipe))) << name;
+    }
+    std::vector<double> values = shipped_values(find_tunable("astar-lane"));
+    values.front() = -1.0;
+    EXPECT_THROW((void)find_tunable("astar-lane").tuned()->make(values), InvalidInput);
+}
+
+TEST(DetectorTuning, ValuesAreInTheOrderOfTheParameters) {
+    const std::vector<double> shipped = shipped_values(find_tunable("astar-lane"));
+    EXPECT_EQ(shipped.front(), 3.95) << "least_radius_m";
+    EXPECT_EQ(shipped.back(), 0.07304) << "heuristic";
+    EXPECT_EQ(values_of(find_tunable("astar-lane"), &TunableParameter::start).back(),
+              AstarLaneParameters{}.heuristic);
 }
 
 TEST(DetectorTuning, FilesHoldWhatWasFound) {
-    const TunableDetector& detector = find_tunable_detector("astar-lane");
-    std::vector<double> values;
-    for (const TunableParameter& parameter : detector.parameters) values.push_back(parameter.lowest);
-    const AstarLaneParameters read = parse_astar_lane_parameters(to_json_text(detector, values), "p.json");
-    EXPECT_EQ(read.least_radius_m, values[0]);
-    EXPECT_EQ(read.heuristic, values.back());
-    EXPECT_EQ(read.max_steps, AstarLaneParameters{}.max_steps);
+    const DetectorRecipe& recipe = find_tunable("astar-lane");
+    const std::vector<double> values = values_of(recipe, &TunableParameter::lowest);
+    EXPECT_EQ(parse_values(recipe, to_json_text(recipe, values), "p.json"), values);
 }
 
 TEST(DetectorTuning, FilesThatAreWrongAreNamed) {
-    const auto fault = [](const std::string& text) {
-        return refusal<InputError>([&] { (void)parse_delaunay_beam_parameters(text, "p.json"); });
+    const DetectorRecipe& recipe = find_tunable("delaunay-beam");
+    const auto fault = [&](const std::string& text) {
+        return refusal<InputError>([&] { (void)parse_values(recipe, text, "p.json"); });
     };
-    const TunableDetector& detector = find_tunable_detector("delaunay-beam");
-    std::vector<double> values;
-    for (const TunableParameter& parameter : detector.parameters) values.push_back(parameter.start);
-    EXPECT_EQ(fault(to_json_text(detector, values)), "accepted");
-    EXPECT_EQ(fault("{\"w_turns\": 1," + to_json_text(detector, values).substr(1)),
+    std::vector<double> values = values_of(recipe, &TunableParameter::start);
+    EXPECT_EQ(fault(to_json_text(recipe, values)), "accepted");
+    EXPECT_EQ(fault("{\"w_turns\": 1," + to_json_text(recipe, values).substr(1)),
               "p.json: w_turns: is not a key here; w_turn is");
     EXPECT_THAT(fault("{}"), HasSubstr("p.json: w_turn"));
     values[0] = -1.0;
-    EXPECT_THAT(fault(to_json_text(detector, values)), HasSubstr("p.json: w_turn"));
+    EXPECT_THAT(fault(to_json_text(recipe, values)), HasSubstr("p.json: w_turn"));
     EXPECT_THAT(fault("nonsense"), HasSubstr("p.json"));
 }
 
@@ -82,7 +101,8 @@ TEST_F(TuneDetector, WritesParametersAndTheirRecord) {
         "tune-method --method delaunay-beam --tracks generated:circle --fp 0.3 --every 60 --evaluations 3 "
         "--seed 4 --out p.json");
     EXPECT_THAT(outcome.output, HasSubstr("delaunay-beam on "));
-    EXPECT_NO_THROW((void)parse_delaunay_beam_parameters(text_of(path("p.json")), path("p.json")));
+    EXPECT_NO_THROW(
+        (void)parse_values(find_tunable("delaunay-beam"), text_of(path("p.json")), path("p.json")));
     const std::string record = text_of(path("p.record.json"));
     for (const char* key : {R"("method": "delaunay-beam")", "generated:circle", R"("evaluations": 3)"}) {
         EXPECT_THAT(record, HasSubstr(key));

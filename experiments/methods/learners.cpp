@@ -1,9 +1,8 @@
-#include "experiments/cross_validation/learners.hpp"
+#include "experiments/methods/learners.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "conelane/rld_parameters.hpp"
+#include "detectors/recipe.hpp"
 #include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/file_text.hpp"
 #include "evaluation/files/front_weights_file.hpp"
@@ -36,14 +35,14 @@ namespace fs = std::filesystem;
 constexpr const char* kStepScores = "step_scores.json";
 constexpr const char* kExtendedNet = "rank_net_extended.json";
 constexpr const char* kPaperNet = "rank_net_paper.json";
-constexpr const char* kDelaunayBeam = "delaunay-beam.json";
-constexpr const char* kAstarLane = "astar-lane.json";
 constexpr const char* kShape = "rld-shape.json";
 constexpr const char* kLearnedRld = "rld-learned.json";
 constexpr const char* kLearnedRldCheckpoint = "rld-learned.checkpoint.json";
 constexpr const char* kColoredRldCheckpoint = "rld-learned.colors.checkpoint.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 constexpr const char* kFrontColorsCheckpoint = "front.colors.checkpoint.json";
+
+using Learned = std::variant<DetectorFactory, RldParameters>;
 
 void write(const fs::path& file, const std::string& text) {
     AtomicFile output(file);
@@ -76,7 +75,7 @@ void learn_steps(const LearningOptions& options, const fs::path& file) {
     write(file, step_scores_json(result.scores, result.record));
 }
 
-void learn_clc(const LearningOptions& options, const fs::path& folder) {
+void learn_clc(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
     if (!fs::exists(folder / kStepScores)) learn_steps(options, folder / kStepScores);
     if (fs::exists(folder / kExtendedNet)) return;
     const std::string steps = text_of(folder / kStepScores);
@@ -99,7 +98,8 @@ void learn_clc(const LearningOptions& options, const fs::path& folder) {
     write(folder / kExtendedNet, rank_net_json(result.weights, result.record));
 }
 
-void learn_clc_paper(const LearningOptions& options, const fs::path& folder) {
+void learn_clc_paper(const DetectorRecipe& /*recipe*/, const LearningOptions& options,
+                     const fs::path& folder) {
     if (fs::exists(folder / kPaperNet)) return;
     TrainingRunOptions run = network_options(options);
     run.candidates.max_per_scene = 120;
@@ -117,24 +117,25 @@ ClcOptions clc_options(const fs::path& folder) {
     return options;
 }
 
-DetectorMaker make_clc(const fs::path& folder, const RunOptions& options) {
-    return maker_of(
-        "clc", [clc = clc_options(folder)] { return make_clc_detector(clc); }, options);
+DetectorFactory made(const ClcOptions& options) {
+    return [options] { return make_clc_detector(options); };
 }
 
-DetectorMaker make_warm_clc(const fs::path& folder, const RunOptions& options) {
+Learned load_clc(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
+    return made(clc_options(folder));
+}
+
+Learned load_warm_clc(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
     ClcOptions clc = clc_options(folder);
     clc.warm_start = true;
-    return maker_of(
-        "clc-warm", [clc] { return make_clc_detector(clc); }, options);
+    return made(clc);
 }
 
-DetectorMaker make_paper_clc(const fs::path& folder, const RunOptions& options) {
+Learned load_paper_clc(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
     ClcOptions clc = paper_clc_options();
     clc.ranking =
         make_rank_net(parsed_file(folder / kPaperNet, [](auto text) { return parse_rank_net(text); }));
-    return maker_of(
-        "clc-paper", [clc] { return make_clc_detector(clc); }, options);
+    return made(clc);
 }
 
 // Tuned methods have at most a dozen numbers, so every fourth pose is enough.
@@ -146,47 +147,31 @@ SceneSet scenes_to_tune_on(const LearningOptions& options) {
     return make_scene_set(options.tracks, scenes);
 }
 
-// The baselines, by random search over their parameters.
+// Tuned detectors, by random search over their parameters. Weights of colors are not tuned, so the parameters
+// for scenes with colors are those without.
 
-void learn_parameters(std::string_view detector, const LearningOptions& options, const fs::path& file) {
+fs::path tuned_file(const DetectorRecipe& recipe, const fs::path& folder) {
+    return folder / (std::string(recipe.name) + ".json");
+}
+
+void learn_tuned(const DetectorRecipe& recipe, const LearningOptions& options, const fs::path& folder) {
+    const fs::path file = tuned_file(recipe, folder);
     if (fs::exists(file)) return;
-    const TunableDetector& tunable = find_tunable_detector(detector);
+    if (!options.without_colors.empty()) {
+        write(file, text_of(tuned_file(recipe, options.without_colors)));
+        return;
+    }
     const SceneSet set = scenes_to_tune_on(options);
-    const TunedDetector tuned =
-        tune_detector(tunable, set, {options.evaluations, options.scenes.seed, options.scenes.threads});
-    write(file, to_json_text(tunable, tuned.values));
+    const TuningResult tuned =
+        tune_detector(recipe, set, {options.evaluations, options.scenes.seed, options.scenes.threads});
+    write(file, to_json_text(recipe, tuned.values));
 }
 
-// Its weight of colors is not tuned, so its parameters for scenes with colors are those without.
-void learn_delaunay_beam(const LearningOptions& options, const fs::path& folder) {
-    if (options.without_colors.empty())
-        learn_parameters("delaunay-beam", options, folder / kDelaunayBeam);
-    else if (!fs::exists(folder / kDelaunayBeam))
-        write(folder / kDelaunayBeam, text_of(options.without_colors / kDelaunayBeam));
-}
-
-void learn_astar_lane(const LearningOptions& options, const fs::path& folder) {
-    learn_parameters("astar-lane", options, folder / kAstarLane);
-}
-
-DetectorMaker make_delaunay_beam(const fs::path& folder, const RunOptions& options) {
-    const fs::path file = folder / kDelaunayBeam;
-    return maker_of(
-        "delaunay-beam",
-        [parameters = parse_delaunay_beam_parameters(text_of(file), file)] {
-            return make_delaunay_beam_detector(parameters);
-        },
-        options);
-}
-
-DetectorMaker make_astar_lane(const fs::path& folder, const RunOptions& options) {
-    const fs::path file = folder / kAstarLane;
-    return maker_of(
-        "astar-lane",
-        [parameters = parse_astar_lane_parameters(text_of(file), file)] {
-            return make_astar_lane_detector(parameters);
-        },
-        options);
+Learned load_tuned(const DetectorRecipe& recipe, const fs::path& folder) {
+    const fs::path file = tuned_file(recipe, folder);
+    return DetectorFactory([make = recipe.tuned()->make, values = parse_values(recipe, text_of(file), file)] {
+        return make(values);
+    });
 }
 
 // The weights of the RLD objective with the costs of the lane's shape.
@@ -215,7 +200,7 @@ RldParameters with_color_weight(const RldParameters& parameters, const LearningO
     return best;
 }
 
-void learn_shape(const LearningOptions& options, const fs::path& folder) {
+void learn_shape(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kShape;
     if (fs::exists(file)) return;
     EvaluationOptions solved;
@@ -229,10 +214,8 @@ void learn_shape(const LearningOptions& options, const fs::path& folder) {
     write_rld_parameters(file, parameters);
 }
 
-DetectorMaker make_shape(const fs::path& folder, const RunOptions& options) {
-    RunOptions learned = options;
-    learned.detector.rld_parameters = read_rld_parameters(folder / kShape);
-    return maker_of(find_detector("rld-shape"), learned);
+Learned load_shape(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
+    return read_rld_parameters(folder / kShape);
 }
 
 // The share of the draws with colors while colors are learned, as for the shipped set of front.
@@ -245,7 +228,7 @@ constexpr std::size_t kLearnedRldUnits = 16;
 constexpr std::size_t kLearnedRldSteps = 2000;
 constexpr double kLearnedRldRate = 0.02;
 
-void learn_rld(const LearningOptions& options, const fs::path& folder) {
+void learn_rld(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kLearnedRld;
     if (fs::exists(file)) return;
     RldTrainingRunOptions run;
@@ -274,10 +257,8 @@ void learn_rld(const LearningOptions& options, const fs::path& folder) {
         fs::remove(folder / checkpoint);
 }
 
-DetectorMaker make_learned_rld(const fs::path& folder, const RunOptions& options) {
-    RunOptions learned = options;
-    learned.detector.rld_parameters = read_rld_parameters(folder / kLearnedRld);
-    return maker_of(find_detector("rld-learned"), learned);
+Learned load_rld(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
+    return read_rld_parameters(folder / kLearnedRld);
 }
 
 // The weights of front. Its training draws its own scenes, so only these options count: seed, threads, and
@@ -320,7 +301,7 @@ FrontTrainingRun learn_colors(FrontTrainingRunOptions run, const LearningOptions
     return colors;
 }
 
-void learn_front(const LearningOptions& options, const fs::path& folder) {
+void learn_front(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
     if (fs::exists(folder / kFrontFoldFile)) return;
     FrontTrainingRunOptions run;
     run.tracks = options.tracks;
@@ -341,43 +322,31 @@ void learn_front(const LearningOptions& options, const fs::path& folder) {
     fs::remove(run.training.checkpoint);
 }
 
-FrontOptions front_options(const fs::path& folder) {
-    FrontOptions front = shipped_front_options();
+Learned load_front(const DetectorRecipe& recipe, const fs::path& folder) {
+    FrontOptions front = std::get<FrontRecipe>(recipe.how).options();
     front.weights = read_weights(folder / kFrontFoldFile);
-    return front;
+    return DetectorFactory([front] { return make_front_detector(front); });
 }
 
-DetectorMaker make_front(const fs::path& folder, const RunOptions& options) {
-    return maker_of(
-        "front", [front = front_options(folder)] { return make_front_detector(front); }, options);
-}
-
-DetectorMaker make_warm_front(const fs::path& folder, const RunOptions& options) {
-    FrontOptions front = front_options(folder);
-    front.repeat_bonus = warm_front_options().repeat_bonus;
-    return maker_of(
-        "front-warm", [front] { return make_front_detector(front); }, options);
-}
-
-constexpr std::array kLearners{Learner{"front", learn_front, make_front},
-                               Learner{"front-warm", learn_front, make_warm_front},
-                               Learner{"clc", learn_clc, make_clc},
-                               Learner{"clc-warm", learn_clc, make_warm_clc},
-                               Learner{"clc-paper", learn_clc_paper, make_paper_clc},
-                               Learner{"delaunay-beam", learn_delaunay_beam, make_delaunay_beam},
-                               Learner{"astar-lane", learn_astar_lane, make_astar_lane},
-                               Learner{"rld-shape", learn_shape, make_shape},
-                               Learner{"rld-learned", learn_rld, make_learned_rld}};
+struct NamedLearner {
+    std::string_view detector;
+    Learner learner;
+};
+constexpr std::array kLearners{NamedLearner{"front", {learn_front, load_front}},
+                               NamedLearner{"front-warm", {learn_front, load_front}},
+                               NamedLearner{"clc", {learn_clc, load_clc}},
+                               NamedLearner{"clc-warm", {learn_clc, load_warm_clc}},
+                               NamedLearner{"clc-paper", {learn_clc_paper, load_paper_clc}},
+                               NamedLearner{"rld-shape", {learn_shape, load_shape}},
+                               NamedLearner{"rld-learned", {learn_rld, load_rld}}};
+constexpr Learner kTuned{learn_tuned, load_tuned};
 
 }  // namespace
 
-std::span<const Learner> learners() {
-    return kLearners;
-}
-
-const Learner* find_learner(std::string_view detector) {
-    const auto learner = std::ranges::find(kLearners, detector, &Learner::detector);
-    return learner == kLearners.end() ? nullptr : &*learner;
+const Learner* find_learner(const DetectorRecipe& recipe) {
+    if (recipe.tuned() != nullptr) return &kTuned;
+    const auto named = std::ranges::find(kLearners, recipe.name, &NamedLearner::detector);
+    return named == kLearners.end() ? nullptr : &named->learner;
 }
 
 }  // namespace conelane::experiments

@@ -1,14 +1,21 @@
 #pragma once
 
+#include "conelane/lane_detector.hpp"
+#include "conelane/rld_parameters.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
-#include "experiments/comparison/runner.hpp"
 
 #include <cstddef>
 #include <filesystem>
-#include <span>
+#include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
+
+namespace conelane {
+struct DetectorRecipe;
+}
 
 namespace conelane::experiments {
 
@@ -27,22 +34,23 @@ struct LearningOptions {
 /// The file of the weights of front in the folder of a fold.
 inline constexpr std::string_view kFrontFoldFile = "front.json";
 
-/// A detector whose weights or parameters come from courses, learned by the recipe of the shipped ones. If
-/// the scenes have colors, the detectors that use them learn those in a second stage: `front` its set for
-/// colors, `rld-learned` its costs on draws that show colors too, and `rld-shape` chooses w_color.
+using DetectorFactory = std::function<std::unique_ptr<LaneDetector>()>;
+
+/// How a detector gets weights or parameters from courses: by the recipe of the shipped ones. If the scenes
+/// have colors, the detectors that use them learn those in a second stage: `front` its set for colors,
+/// `rld-learned` its costs on draws that show colors too, and `rld-shape` chooses w_color.
 struct Learner {
-    std::string_view detector;
     /// Learns and writes its files to the folder. Existing files are not learned again, so detectors share
     /// them and a stopped run resumes. Throws InputError or InvalidInput.
-    void (*learn)(const LearningOptions& options, const std::filesystem::path& folder);
-    /// The detector with these files. Throws InputError if one is missing or invalid.
-    DetectorMaker (*maker)(const std::filesystem::path& folder, const RunOptions& options);
+    void (*learn)(const DetectorRecipe& recipe, const LearningOptions& options,
+                  const std::filesystem::path& folder);
+    /// What the files hold: parameters of RLD for the recipe, or else how to make the detector. Throws
+    /// InputError if one is missing or invalid.
+    std::variant<DetectorFactory, RldParameters> (*load)(const DetectorRecipe& recipe,
+                                                         const std::filesystem::path& folder);
 };
 
-/// front, front-warm, clc, clc-warm, clc-paper, delaunay-beam, astar-lane, rld-shape and rld-learned.
-[[nodiscard]] std::span<const Learner> learners();
-
-/// Null if the detector learns nothing, so its answers are the same in every fold.
-[[nodiscard]] const Learner* find_learner(std::string_view detector);
+/// The learner of a detector; null if it learns nothing. Every tuned detector has one: random search.
+[[nodiscard]] const Learner* find_learner(const DetectorRecipe& recipe);
 
 }  // namespace conelane::experiments

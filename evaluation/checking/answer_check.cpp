@@ -1,4 +1,4 @@
-#include "experiments/comparison/answer_check.hpp"
+#include "evaluation/checking/answer_check.hpp"
 
 #include "conelane/check.hpp"
 #include "evaluation/scenes/cone_index.hpp"
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace conelane::experiments {
+namespace conelane {
 namespace {
 
 /// The fault of a lane that was found, in words; empty if there is none.
@@ -73,4 +73,4 @@ void check_answer(LaneRecord& record, const Scene& seen, const RldParameters& pa
     record.answer = std::move(rejected);
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-namespace conelane::experiments {
+namespace conelane {
 
 /// The edges between consecutive cones of each boundary; of a closed lane also those from last to first.
 /// Nothing if the lane names a cone that is not in the scene, or one twice in a row.
@@ -21,4 +21,4 @@ namespace conelane::experiments {
 /// unchanged.
 void check_answer(LaneRecord& record, const Scene& seen, const RldParameters& parameters);
 
-}  // namespace conelane::experiments
+}  // namespace conelane
