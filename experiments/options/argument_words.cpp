@@ -26,8 +26,9 @@ void require_whole_list(const CLI::Option* option, std::string_view text) {
 }
 
 /// A program from outside behind a list of other things would be taken for one of these, and a value too many
-/// would be "not expected", without the reason.
-void require_own_value(const CLI::Option* option, int values_before, const std::string& word) {
+/// would be "not expected", without the reason. With positionals it may be one of them.
+void require_own_value(const CLI::Option* option, int values_before, bool with_positionals,
+                       const std::string& word) {
     constexpr std::array<std::string_view, 4> kMethods{"--method", "--methods", "--solver", "--solvers"};
     constexpr std::array<std::string_view, 3> kOutside{"exec:", "solver:", "lanes:"};
     if (option == nullptr) return;
@@ -36,7 +37,7 @@ void require_own_value(const CLI::Option* option, int values_before, const std::
         std::ranges::any_of(kOutside, [&](std::string_view kind) { return word.starts_with(kind); });
     const bool is_foreign =
         most > 1 && is_outside && std::ranges::find(kMethods, option->get_name()) == kMethods.end();
-    if (values_before < most && !is_foreign) return;
+    if ((values_before < most || with_positionals) && !is_foreign) return;
     throw CLI::ValidationError(
         option->get_name(),
         fmt::format("does not take '{}'; write the values of an option directly behind its name", word));
@@ -86,10 +87,10 @@ void refuse_misread_words(CLI::App& program, std::span<const char* const> argume
             names_a_command = true;
             continue;
         }
-        if (!takes_positionals(*app)) {
-            if (names_a_command && !app->get_subcommands({}).empty()) refuse_name(*app, word);
-            require_own_value(option, values++, word);
-        }
+        const bool with_positionals = takes_positionals(*app);
+        if (names_a_command && !app->get_subcommands({}).empty() && !with_positionals)
+            refuse_name(*app, word);
+        require_own_value(option, values++, with_positionals, word);
         names_a_command = false;
         require_whole_list(option, word);
     }

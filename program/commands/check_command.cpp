@@ -156,7 +156,7 @@ class Check {
         if (!annotated.ground_truth) return set;
         Lane lane = *annotated.ground_truth;
         if (nearest) lane = cut_to_nearest(std::move(lane), annotated.scene, *nearest);
-        const auto graph = experiments::lane_graph_of(lane, set.scene);
+        const auto graph = conelane::lane_graph_of(lane, set.scene);
         if (!graph) return set;
         const CheckReport report = check(set.scene, parameters_, *graph);
         if (report.violations.empty()) set.learn({"the ground truth", report.objective.value()});
