@@ -76,8 +76,7 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
     const std::string& description = command->get_description();
-    const std::size_t end =
-        std::min(description.find(". "), description.find('\n'));
+    const std::size_t end = std::min(description.find(". "), description.find('\n'));
     return entry(command->get_display_name(true), description.substr(0, end));
 }
 

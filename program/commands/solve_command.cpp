@@ -57,7 +57,8 @@ ChosenSolver choose(const Options& options) {
         throw InvalidInput("--all-rows", "is for programs from outside: --solver exec:NAME=COMMAND");
     const RldSolverEntry* entry = find_rld_solver(options.solver);
     if (entry == nullptr) {
-        throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane methods --solvers`");
+        throw InvalidInput("--solver",
+                           "there is no solver '" + options.solver + "', see `conelane methods --solvers`");
     }
     return {entry->make(formulation), options.solver, options.formulation};
 }
@@ -151,9 +152,10 @@ void add_solve_command(CLI::App& program) {
         *program.add_subcommand("solve", "RLD solutions of scenes: the lane graph of least cost");
     auto options = std::make_shared<Options>();
     command
-        .add_option("--solver", options->solver,
-                    "see `conelane methods --solvers`; or exec:NAME=COMMAND, a program that solves MPS or LP files "
-                    "(docs/from-outside.md)")
+        .add_option(
+            "--solver", options->solver,
+            "see `conelane methods --solvers`; or exec:NAME=COMMAND, a program that solves MPS or LP files "
+            "(docs/from-outside.md)")
         ->capture_default_str();
     command.add_flag(
         "--all-rows", options->all_rows,
