@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/files/json_fields.hpp"
 #include "evaluation/outside/solver_program.hpp"
 
 #include <algorithm>
@@ -20,7 +20,6 @@ namespace conelane {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 using Kind = OutsideDetector::Kind;
 
@@ -81,41 +80,6 @@ OutsideDetector parse_named_source(std::string_view text, Kind kind, std::string
     }
     if (detector.is_solver()) SolverProgram::require_valid_command(detector.source);
     return detector;
-}
-
-DetectorCard read_card(const JsonNode& json) {
-    DetectorCard card;
-    const auto text = [&](const char* key, std::optional<std::string>& value) {
-        if (const auto found = json.find(key)) value = found->string();
-    };
-    const auto boolean = [&](const char* key, std::optional<bool>& value) {
-        if (const auto found = json.find(key)) value = found->boolean();
-    };
-    text("name", card.name);
-    text("address", card.address);
-    text("licence", card.licence);
-    boolean("colour_used", card.color_used);
-    boolean("history_used", card.history_used);
-    if (const auto courses = json.find("training_courses")) {
-        card.training_courses.emplace();
-        const std::size_t size = courses->array_size();
-        for (std::size_t i = 0; i < size; ++i) card.training_courses->push_back(courses->element(i).string());
-    }
-    return card;
-}
-
-ordered_json to_json(const DetectorCard& card) {
-    ordered_json json = ordered_json::object();
-    const auto put_if_said = [&](const char* key, const auto& value) {
-        if (value) json[key] = *value;
-    };
-    put_if_said("name", card.name);
-    put_if_said("address", card.address);
-    put_if_said("licence", card.licence);
-    put_if_said("colour_used", card.color_used);
-    put_if_said("history_used", card.history_used);
-    put_if_said("training_courses", card.training_courses);
-    return json;
 }
 
 }  // namespace
@@ -186,42 +150,11 @@ std::optional<fs::path> card_path(const OutsideDetector& detector) {
 
 DetectorCard read_detector_card(const fs::path& file) {
     DetectorCard card;
-    with_json_file(file, [&](const JsonNode& json) { card = read_card(json); });
-    return card;
-}
-
-std::string outside_detector_json(const OutsideDetector& detector) {
-    ordered_json json{{"name", detector.name}, {to_string(detector.kind), detector.source}};
-    if (detector.formulation) json["formulation"] = to_string(*detector.formulation);
-    if (detector.card) json["card"] = to_json(*detector.card);
-    return to_line(json);
-}
-
-std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_record) {
-    std::vector<OutsideDetector> found;
-    with_json_text(run_record, "run.json", [&](const JsonNode& json) {
-        const auto all = json.find("methods");
-        const std::size_t size = all ? all->array_size() : 0;
-        for (std::size_t i = 0; i < size; ++i) {
-            const JsonNode detector = all->element(i);
-            OutsideDetector outside;
-            for (const Kind kind : kKinds) {
-                const auto source = detector.find(to_string(kind));
-                if (!source) continue;
-                outside.kind = kind;
-                outside.source = source->string();
-            }
-            if (outside.source.empty()) continue;
-            outside.name = detector.member("name").string();
-            if (const auto formulation = detector.find("formulation"))
-                outside.formulation = formulation_of(formulation->string());
-            if (const auto card = detector.find("card")) outside.card = read_card(*card);
-            // A sweep lists the same detector once for each size.
-            if (std::ranges::find(found, outside.name, &OutsideDetector::name) == found.end())
-                found.push_back(std::move(outside));
-        }
+    with_json_file(file, [&](const JsonNode& json) {
+        JsonFieldReader reader(json);
+        fields_of(card, reader);
     });
-    return found;
+    return card;
 }
 
 }  // namespace conelane

@@ -2,10 +2,12 @@
 
 #include "conelane/formulation.hpp"
 
+#include <concepts>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace conelane {
@@ -22,6 +24,18 @@ struct DetectorCard {
     /// One line below a table: "ft-fsd-path-planning; MIT; no color; ...".
     [[nodiscard]] std::string summary() const;
 };
+
+/// The fields of its file, see json_fields.hpp.
+template <typename Card, typename Fields>
+requires std::same_as<std::remove_const_t<Card>, DetectorCard>
+void fields_of(Card& card, Fields& fields) {
+    fields.maybe("name", card.name);
+    fields.maybe("address", card.address);
+    fields.maybe("licence", card.licence);
+    fields.maybe("colour_used", card.color_used);
+    fields.maybe("history_used", card.history_used);
+    fields.maybe("training_courses", card.training_courses);
+}
 
 /// A detector that is not part of this program.
 struct OutsideDetector {
@@ -65,10 +79,5 @@ struct OutsideDetector {
 
 /// Throws InputError naming file and key.
 [[nodiscard]] DetectorCard read_detector_card(const std::filesystem::path& file);
-
-/// For the record of a run: a method as JSON, and the methods from outside in the array "methods" of a
-/// record.
-[[nodiscard]] std::string outside_detector_json(const OutsideDetector& detector);
-[[nodiscard]] std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_record);
 
 }  // namespace conelane

@@ -6,105 +6,106 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane {
 namespace {
 
-struct Column {
-    enum Index : std::size_t {
-        detector,
-        condition,
-        rate,
-        range,
-        scenes,
-        usable,
-        success,
-        iou,
-        accurate,
-        ground_truth,
-        near_ground_truth,
-        too_short,
-        diverging_from_20,
-        diverging_below_20,
-        none,
-        error,
-        lateral_median,
-        lateral_p95,
-        heading_p95,
-        unsteady,
-        complete,
-        solved,
-        median,
-        mean,
-        p95,
-        p99,
-        max,
-        count
-    };
+/// A measure of a row: its key in JSON and, where the table shows it, its title and format.
+struct Measure {
+    std::string_view key;
+    std::string_view title;
+    int digits;
+    double factor;
+    std::optional<double> (*of)(const ScoreSummary& summary);
 };
-constexpr std::array<std::string_view, Column::count> kHeader{
+template <auto member>
+std::optional<double> of(const ScoreSummary& summary) {
+    return summary.*member;
+}
+template <auto member>
+std::optional<double> of_latency(const ScoreSummary& summary) {
+    return summary.latency.*member;
+}
+using S = ScoreSummary;
+constexpr std::array kLaneMeasures{
+    Measure{"usable_share", "usable %", 1, 100.0, of<&S::usable_share>},
+    Measure{"success_share", "success %", 1, 100.0, of<&S::success_share>},
+    Measure{"mean_iou", "IoU %", 1, 100.0, of<&S::mean_iou>},
+    Measure{"lateral_median_m", "centre m", 2, 1.0, of<&S::lateral_median_m>},
+    Measure{"lateral_p95_m", "p95 m", 2, 1.0, of<&S::lateral_p95_m>},
+    Measure{"heading_median_rad", "", 3, 1.0, of<&S::heading_median_rad>},
+    Measure{"heading_p95_rad", "heading p95 rad", 3, 1.0, of<&S::heading_p95_rad>},
+    Measure{"unsteady_share", "unsteady %", 1, 100.0, of<&S::unsteady_share>}};
+constexpr std::array kSearchMeasures{
+    Measure{"accurate_share", "accurate %", 1, 100.0, of<&S::accurate_share>},
+    Measure{"solved_share", "solved %", 1, 100.0, of<&S::solved_share>},
+    Measure{"complete_share", "complete %", 1, 100.0, of<&S::complete_share>},
+    Measure{"best_candidate_mean_iou", "", 1, 100.0, of<&S::best_candidate_mean_iou>},
+    Measure{"best_candidate_near_share", "", 1, 100.0, of<&S::best_candidate_near_share>}};
+using L = LatencyStatistics;
+constexpr std::array kLatencies{
+    Measure{"median", "median ms", 2, 1.0, of_latency<&L::median_ms>},
+    Measure{"mean", "mean ms", 2, 1.0, of_latency<&L::mean_ms>},
+    Measure{"standard_deviation", "", 2, 1.0, of_latency<&L::standard_deviation_ms>},
+    Measure{"p95", "p95 ms", 2, 1.0, of_latency<&L::p95_ms>},
+    Measure{"p99", "p99 ms", 2, 1.0, of_latency<&L::p99_ms>},
+    Measure{"max", "max ms", 2, 1.0, of_latency<&L::max_ms>},
+    Measure{"shifted_geometric_mean", "", 2, 1.0, of_latency<&L::shifted_geometric_mean_ms>}};
+
+constexpr std::array<std::string_view, 27> kTitles{
     "method",   "condition",  "fp %",     "range m",   "scenes",          "usable %",   "success %",
     "IoU %",    "accurate %", "GT %",     "near GT %", "too short %",     "div>=20 %",  "div<20 %",
     "none %",   "error %",    "centre m", "p95 m",     "heading p95 rad", "unsteady %", "complete %",
     "solved %", "median ms",  "mean ms",  "p95 ms",    "p99 ms",          "max ms"};
-using Line = std::array<std::string, Column::count>;
-constexpr std::string_view kUnknown = "-";
+/// Cells by their titles; unknown ones are missing.
+using Line = std::map<std::string_view, std::string>;
 
-std::string number(std::optional<double> value, int digits) {
-    return value ? fmt::format("{:.{}f}", *value, digits) : std::string(kUnknown);
+void put(Line& line, std::string_view title, std::optional<double> value, int digits) {
+    if (value) line[title] = fmt::format("{:.{}f}", *value, digits);
 }
 
-std::string percent(std::optional<double> share) {
-    return share ? number(100.0 * *share, 1) : std::string(kUnknown);
-}
-
-Line empty_line() {
-    Line line;
-    line.fill(std::string(kUnknown));
-    return line;
+void put_percent(Line& line, std::string_view title, std::optional<double> share) {
+    if (share) put(line, title, 100.0 * *share, 1);
 }
 
 Line line_of(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
-    Line line = empty_line();
-    line[Column::detector] = row.key.detector_label();
-    if (!row.key.condition.empty()) line[Column::condition] = row.key.condition;
-    line[Column::rate] = percent(row.key.false_positive_rate);
-    line[Column::range] = number(row.key.range_m, 0);
-    line[Column::scenes] = fmt::format("{}{}", summary.scenes, summary.trained_on > 0 ? "*" : "");
-    line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
+    Line line;
+    for (const std::span<const Measure> measures :
+         {std::span<const Measure>(kLaneMeasures), {kSearchMeasures}, {kLatencies}}) {
+        for (const Measure& measure : measures) {
+            if (const std::optional<double> value = measure.of(summary))
+                put(line, measure.title, measure.factor * *value, measure.digits);
+        }
+    }
+    line["method"] = row.key.detector_label();
+    if (!row.key.condition.empty()) line["condition"] = row.key.condition;
+    put_percent(line, "fp %", row.key.false_positive_rate);
+    put(line, "range m", row.key.range_m, 0);
+    line["scenes"] = fmt::format("{}{}", summary.scenes, summary.trained_on > 0 ? "*" : "");
+    put_percent(line, "GT %", summary.share(Category::ground_truth));
     // An error counts as no lane in every other measure; here each scene is in exactly one column.
     const double error_share = static_cast<double>(summary.errors) / static_cast<double>(summary.scenes);
-    line[Column::none] = percent(std::max(0.0, summary.share(Category::none) - error_share));
-    line[Column::error] = percent(error_share);
+    put_percent(line, "none %", std::max(0.0, summary.share(Category::none) - error_share));
+    put_percent(line, "error %", error_share);
     // If divergence is unknown in all scenes, all shares that depend on it are unknown, not zero.
     if (summary.divergence_unknown < summary.scenes) {
-        line[Column::near_ground_truth] = percent(summary.share(Category::near_ground_truth));
-        line[Column::too_short] = percent(summary.share(Category::too_short));
-        line[Column::diverging_from_20] = percent(summary.share(Category::diverging_from_20));
-        line[Column::diverging_below_20] = percent(summary.share(Category::diverging_below_20));
-        line[Column::success] = percent(summary.success_share);
+        put_percent(line, "near GT %", summary.share(Category::near_ground_truth));
+        put_percent(line, "too short %", summary.share(Category::too_short));
+        put_percent(line, "div>=20 %", summary.share(Category::diverging_from_20));
+        put_percent(line, "div<20 %", summary.share(Category::diverging_below_20));
+    } else {
+        line.erase("success %");
     }
-    line[Column::usable] = percent(summary.usable_share);
-    line[Column::lateral_median] = number(summary.lateral_median_m, 2);
-    line[Column::lateral_p95] = number(summary.lateral_p95_m, 2);
-    line[Column::heading_p95] = number(summary.heading_p95_rad, 3);
-    line[Column::unsteady] = percent(summary.unsteady_share);
-    line[Column::iou] = percent(summary.mean_iou);
-    line[Column::accurate] = percent(summary.accurate_share);
-    line[Column::complete] = percent(summary.complete_share);
-    line[Column::solved] = percent(summary.solved_share);
-    line[Column::median] = number(summary.latency.median_ms, 2);
-    line[Column::mean] = number(summary.latency.mean_ms, 2);
-    line[Column::p95] = number(summary.latency.p95_ms, 2);
-    line[Column::p99] = number(summary.latency.p99_ms, 2);
-    line[Column::max] = number(summary.latency.max_ms, 2);
     return line;
 }
 
@@ -121,36 +122,34 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
         kPublishedClc, [&](const PublishedClcRow& row) { return has_rate(rows, row.false_positive_rate); });
     for (const PublishedClcRow& row : kPublishedClc) {
         if (any_rate && !has_rate(rows, row.false_positive_rate)) continue;
-        Line line = empty_line();
-        line[Column::detector] = "CLC paper";
-        line[Column::rate] = percent(row.false_positive_rate);
-        line[Column::range] = "30+50";
-        line[Column::ground_truth] = number(row.ground_truth, 1);
-        line[Column::near_ground_truth] = number(row.near_ground_truth, 1);
-        line[Column::too_short] = number(row.too_short, 1);
-        line[Column::diverging_from_20] = number(row.diverging_from_20, 1);
-        line[Column::diverging_below_20] = number(row.diverging_below_20, 1);
-        line[Column::success] = number(row.success, 1);
-        line[Column::iou] = number(row.mean_iou, 1);
-        line[Column::complete] = number(row.complete, 1);
-        line[Column::median] = "<" + number(kPublishedClcMedianBelow_ms, 0);
-        line[Column::max] = number(kPublishedClcMax_ms, 0);
-        lines.push_back(line);
+        Line& line = lines.emplace_back();
+        line["method"] = "CLC paper";
+        put_percent(line, "fp %", row.false_positive_rate);
+        line["range m"] = "30+50";
+        for (const auto& [title, value] : {std::pair{"GT %", row.ground_truth},
+                                           {"near GT %", row.near_ground_truth},
+                                           {"too short %", row.too_short},
+                                           {"div>=20 %", row.diverging_from_20},
+                                           {"div<20 %", row.diverging_below_20},
+                                           {"success %", row.success},
+                                           {"IoU %", row.mean_iou},
+                                           {"complete %", row.complete}})
+            put(line, title, value, 1);
+        line["median ms"] = fmt::format("<{:.0f}", kPublishedClcMedianBelow_ms);
+        put(line, "max ms", kPublishedClcMax_ms, 0);
     }
     for (const PublishedRldRow& row : kPublishedRld) {
-        Line line = empty_line();
-        line[Column::detector] = fmt::format("RLD paper {}", row.printed_ratio);
-        line[Column::rate] = percent(row.false_positive_rate);
-        line[Column::accurate] =
-            (row.upper_bound ? ">" : "") + number(100.0 - row.inaccurate, row.upper_bound ? 0 : 2);
-        lines.push_back(line);
+        Line& line = lines.emplace_back();
+        line["method"] = fmt::format("RLD paper {}", row.printed_ratio);
+        put_percent(line, "fp %", row.false_positive_rate);
+        put(line, "accurate %", 100.0 - row.inaccurate, row.upper_bound ? 0 : 2);
+        if (row.upper_bound) line["accurate %"].insert(0, ">");
     }
-    Line timing = empty_line();
-    timing[Column::detector] = fmt::format("RLD paper n={}", kPublishedRldConeSet);
-    timing[Column::solved] = number(kPublishedRldSolved, 2);
-    timing[Column::mean] = number(kPublishedRldMean_ms, 2);
-    timing[Column::p95] = number(kPublishedRldP95_ms, 2);
-    lines.push_back(timing);
+    Line& timing = lines.emplace_back();
+    timing["method"] = fmt::format("RLD paper n={}", kPublishedRldConeSet);
+    put(timing, "solved %", kPublishedRldSolved, 2);
+    put(timing, "mean ms", kPublishedRldMean_ms, 2);
+    put(timing, "p95 ms", kPublishedRldP95_ms, 2);
     return lines;
 }
 
@@ -177,45 +176,38 @@ std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
 }
 
 std::string score_table(std::span<const ScoreRow> rows) {
-    Line header;
-    std::ranges::transform(kHeader, header.begin(),
-                           [](std::string_view title) { return std::string(title); });
-    std::vector<Line> own;
-    for (const ScoreRow& row : rows) own.push_back(line_of(row));
+    std::vector<Line> lines(1);
+    for (const std::string_view title : kTitles) lines[0][title] = title;
+    std::ranges::transform(rows, std::back_inserter(lines), line_of);
     const std::vector<Line> published = published_lines(rows);
+    lines.insert(lines.end(), published.begin(), published.end());
 
-    std::array<std::size_t, kHeader.size()> widths{};
-    const auto widen = [&](const Line& line) {
-        for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-    };
-    widen(header);
-    std::ranges::for_each(own, widen);
-    std::ranges::for_each(published, widen);
-
-    const bool is_condition_named =
-        std::ranges::any_of(rows, [](const ScoreRow& row) { return !row.key.condition.empty(); });
-    std::string table;
-    const auto write = [&](const Line& line) {
-        table += fmt::format("{:<{}}", line[Column::detector], widths[Column::detector]);
-        for (std::size_t i = 1; i < line.size(); ++i) {
-            if (i == Column::condition && !is_condition_named) continue;
-            table += fmt::format("  {:>{}}", line[i], widths[i]);
+    std::vector<std::string> texts(lines.size());
+    for (const std::string_view title : kTitles) {
+        if (title == "condition" &&
+            std::ranges::all_of(rows, [](const ScoreRow& row) { return row.key.condition.empty(); }))
+            continue;
+        std::vector<std::string> cells;
+        for (Line& line : lines) cells.push_back(line.emplace(title, "-").first->second);
+        const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            texts[i] += title == kTitles[0] ? fmt::format("{:<{}}", cells[i], width)
+                                            : fmt::format("  {:>{}}", cells[i], width);
         }
-        table += '\n';
-    };
-    write(header);
-    std::ranges::for_each(own, write);
+    }
+    std::string notes;
     std::size_t unknown = 0;
     for (const ScoreRow& row : rows) unknown += row.summary.divergence_unknown;
     if (unknown > 0) {
-        table += fmt::format("divergence unknown, scenes scored without the boundaries of their track: {}\n",
+        notes += fmt::format("divergence unknown, scenes scored without the boundaries of their track: {}\n",
                              unknown);
     }
     if (std::ranges::any_of(rows, [](const ScoreRow& row) { return row.summary.trained_on > 0; }))
-        table += "* with courses that the method has learned from: no held-out figure\n";
-    table += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
-    std::ranges::for_each(published, write);
-    return table;
+        notes += "* with courses that the method has learned from: no held-out figure\n";
+    notes += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
+    const auto own = static_cast<std::ptrdiff_t>(rows.size()) + 1;
+    return fmt::format("{}\n{}{}\n", fmt::join(texts.begin(), texts.begin() + own, "\n"), notes,
+                       fmt::join(texts.begin() + own, texts.end(), "\n"));
 }
 
 std::string ScoreKey::detector_label() const {
@@ -245,11 +237,16 @@ nlohmann::ordered_json to_json(const Calibration& calibration) {
 
 }  // namespace
 
-std::string summary_json(const ScoreRow& row) {
+nlohmann::ordered_json summary_json(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
     nlohmann::ordered_json json;
     const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) json[key] = *value;
+    };
+    const auto put_measures = [&](nlohmann::ordered_json& object, std::span<const Measure> measures) {
+        for (const Measure& measure : measures) {
+            if (const auto value = measure.of(summary)) object[std::string(measure.key)] = *value;
+        }
     };
     json["method"] = row.key.detector;
     put_if_known("nearest", row.key.nearest);
@@ -263,32 +260,13 @@ std::string summary_json(const ScoreRow& row) {
     for (std::size_t i = 0; i < kCategoryCount; ++i) {
         json["share"][std::string(to_string(static_cast<Category>(i)))] = summary.category_share[i];
     }
-    put_if_known("usable_share", summary.usable_share);
-    json["success_share"] = summary.success_share;
-    put_if_known("mean_iou", summary.mean_iou);
-    put_if_known("lateral_median_m", summary.lateral_median_m);
-    put_if_known("lateral_p95_m", summary.lateral_p95_m);
-    put_if_known("heading_median_rad", summary.heading_median_rad);
-    put_if_known("heading_p95_rad", summary.heading_p95_rad);
-    put_if_known("unsteady_share", summary.unsteady_share);
-    if (const auto said = to_json(summary.calibration); !said.empty()) json["calibration"] = said;
+    put_measures(json, kLaneMeasures);
+    if (auto said = to_json(summary.calibration); !said.empty()) json["calibration"] = std::move(said);
     json["accuracy_scenes"] = summary.accuracy_scenes;
-    put_if_known("accurate_share", summary.accurate_share);
-    put_if_known("solved_share", summary.solved_share);
-    put_if_known("complete_share", summary.complete_share);
-    put_if_known("best_candidate_mean_iou", summary.best_candidate_mean_iou);
-    put_if_known("best_candidate_near_share", summary.best_candidate_near_share);
-    const LatencyStatistics& latency = summary.latency;
-    json["latency_ms"] = {{"median", latency.median_ms},
-                          {"mean", latency.mean_ms},
-                          {"standard_deviation", latency.standard_deviation_ms},
-                          {"p95", latency.p95_ms},
-                          {"p99", latency.p99_ms},
-                          {"max", latency.max_ms},
-                          {"shifted_geometric_mean", latency.shifted_geometric_mean_ms}};
-    json["within_budget_share"] = latency.share_within_budget;
-    // A detector name from a file may contain bytes that are not UTF-8.
-    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    put_measures(json, kSearchMeasures);
+    put_measures(json["latency_ms"], kLatencies);
+    json["within_budget_share"] = summary.latency.share_within_budget;
+    return json;
 }
 
 }  // namespace conelane

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace conelane {
 
 /// The key of a row of a score table.
@@ -43,8 +45,8 @@ struct ScoreRow {
 /// false-positive rates of the rows (all rates if the rows have none of the paper's).
 [[nodiscard]] std::string score_table(std::span<const ScoreRow> rows);
 
-/// One row as a JSON object in one line, without newline. Shares in [0, 1], latencies in ms; an unknown
-/// measure has no key. The caller adds the provenance.
-[[nodiscard]] std::string summary_json(const ScoreRow& row);
+/// One row as a JSON object. Shares in [0, 1], latencies in ms; an unknown measure has no key. The caller
+/// adds the provenance.
+[[nodiscard]] nlohmann::ordered_json summary_json(const ScoreRow& row);
 
 }  // namespace conelane

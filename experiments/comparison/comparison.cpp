@@ -23,7 +23,6 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
@@ -63,56 +62,38 @@ std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOp
     return lanes;
 }
 
-AnswerErrors errors_among(const std::vector<std::vector<LaneRecord>>& files) {
-    AnswerErrors errors;
-    for (const std::vector<LaneRecord>& records : files) {
-        for (const LaneRecord& record : records) add_answer_of(errors, record);
-    }
-    return errors;
-}
-
 }  // namespace
 
-ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set,
-                                  const std::vector<std::string>& lanes_files,
-                                  const std::string& run_record) {
-    std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
-    records.reserve(lanes_files.size());
-    const OutsideDetectors outside{outside_detectors_of_record(run_record),
-                                   read_echo_floor(directory / kEchoFloorFile)};
-    const bool is_cross_validated = nlohmann::json::parse(run_record).contains("cross_validation");
-    RecordScorer scorer(set.scenes, set.tracks, [&](const std::string& detector) {
-        return outside.courses_of(detector, is_cross_validated);
-    });
-    std::vector<ScoredRecord> scored;
-    for (const std::string& name : lanes_files) {
-        records.push_back(read_lanes(directory / name));
-        std::ranges::move(scorer.score(records.back(), directory / name), std::back_inserter(scored));
+ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set, const RunRecord& record) {
+    const EchoFloor echo = read_echo_floor(directory / kEchoFloorFile);
+    const RecordScorer scorer(set.scenes, set.tracks);
+    std::vector<ScoredMethod> scored;
+    AnswerErrors errors;
+    for (const MethodRecord& method : record.methods) {
+        const fs::path file = directory / method.lanes_file();
+        scored.push_back(scorer.score(method, read_lanes(file), file));
+        for (const LaneRecord& lane : scored.back().records) add_answer_of(errors, lane);
     }
-    const std::vector<ScoreRow> rows = summarise(scored);
     const LeftOutScenes left_out = read_left_out(track_boundaries_path(directory / kScenesFile));
-    const std::string table = score_table(rows) + outside_notes(scored, outside) + table_note_on(left_out);
     // Earlier tables stay, with the scores that they belong to, until all new files are written.
     AtomicFile scores(directory / "scores.jsonl");
     AtomicFile results(directory / "results.jsonl");
-    AtomicFile table_text(directory / "table.txt");
+    AtomicFile table(directory / "table.txt");
     write_scores(scores.stream(), scored);
-    write_results(results.stream(), rows, scored, outside, run_record);
-    table_text.stream() << table;
-    commit_together(std::array{&scores, &results, &table_text});
-    return {summary(scored, summary_notes(outside, left_out)), errors_among(records)};
+    write_results(results.stream(), scored, echo, record.text());
+    table.stream() << wide_table(scored, echo) << table_note_on(left_out);
+    commit_together(std::array{&scores, &results, &table});
+    return {summary(scored, left_out), errors};
 }
 
 ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& directory) {
-    std::set<std::string> lanes_files_seen;
-    bool any_program = false;
-    for (const Method& method : options.methods) {
-        any_program = any_program || method.programs;
-        if (lanes_files_seen.insert(method.lanes_file()).second) continue;
+    const RunRecord record = record_of(options);
+    std::set<std::string> lanes_files;
+    for (const MethodRecord& method : record.methods) {
+        if (lanes_files.insert(method.lanes_file()).second) continue;
         const std::string cones = method.nearest ? " of " + std::to_string(*method.nearest) + " cones" : "";
         throw InvalidInput("method", "'" + method.name + "'" + cones + " is named twice");
     }
-    const std::string record = run_record(options);
     LeftOutScenes left_out;
     std::optional<Progress> progress;
     const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard, left_out,
@@ -131,20 +112,21 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
     write_scene_set(directory / kScenesFile, set, left_out);
     if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     if (options.prepare) options.prepare();
-    std::vector<std::string> lanes_files;
-    for (const Method& method : options.methods) {
-        lanes_files.push_back(method.lanes_file());
-        const fs::path file = directory / lanes_files.back();
+    bool any_program = false;
+    for (std::size_t i = 0; i < options.methods.size(); ++i) {
+        const Method& method = options.methods[i];
+        const fs::path file = directory / record.methods[i].lanes_file();
         const auto lanes = finished.find(method.name);
         if (lanes != finished.end()) {
             write_lanes(file, lanes->second);
         } else {
             answer_scenes(method, set.scenes, options.run, file);
         }
+        any_program = any_program || method.programs;
     }
     const fs::path echo_file = directory / kEchoFloorFile;
     if (any_program && !fs::exists(echo_file)) write_echo_floor(echo_file, measure_echo_floor(set.scenes));
-    return score_directory(directory, set, lanes_files, record);
+    return score_directory(directory, set, record);
 }
 
 }  // namespace conelane::experiments

@@ -38,9 +38,8 @@ struct ComparisonOutcome {
 [[nodiscard]] ComparisonOutcome merge(const std::vector<std::filesystem::path>& shards,
                                       const std::filesystem::path& directory, bool overwrite = false);
 
-/// Scores the lanes in a directory and writes scores.jsonl, results.jsonl and table.txt there.
+/// Scores the lanes in the directory of a run and writes scores.jsonl, results.jsonl and table.txt there.
 [[nodiscard]] ComparisonOutcome score_directory(const std::filesystem::path& directory, const SceneSet& set,
-                                                const std::vector<std::string>& lanes_files,
-                                                const std::string& run_record);
+                                                const RunRecord& record);
 
 }  // namespace conelane::experiments

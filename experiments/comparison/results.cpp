@@ -2,19 +2,19 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/input_error.hpp"
+#include "evaluation/files/json_fields.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/comparison/runner.hpp"
 #include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <map>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <oneapi/tbb/parallel_for.h>
 
 namespace conelane::experiments {
@@ -82,13 +82,12 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     return line;
 }
 
-/// The times that detectors report themselves, of the records that `is_meant` selects.
-template <typename IsMeant>
-std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, IsMeant is_meant) {
+/// The times that a method reports itself.
+std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, const ScoreKey* row = nullptr) {
     std::vector<double> times_ms;
-    for (const ScoredRecord& record : scored) {
-        if (record.record->self_timed_ms && is_meant(record))
-            times_ms.push_back(*record.record->self_timed_ms);
+    for (const auto& [scene, record, score, failure] : scored) {
+        if (record->self_timed_ms && (row == nullptr || key_of(*scene, *record) == *row))
+            times_ms.push_back(*record->self_timed_ms);
     }
     return times_ms;
 }
@@ -97,29 +96,33 @@ nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
     return {{"median", median(times_ms)}, {"p95", quantile(times_ms, 0.95)}};
 }
 
-nlohmann::ordered_json outside_part(const OutsideDetector& detector, const std::vector<double>& own_ms,
-                                    const EchoFloor& echo) {
-    nlohmann::ordered_json part{{"outside", to_string(detector.kind)}};
-    if (!own_ms.empty()) part["self_timed_ms"] = median_and_p95(own_ms);
-    if (detector.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
-    const auto described = nlohmann::ordered_json::parse(outside_detector_json(detector));
-    if (described.contains("card")) part["card"] = described["card"];
-    return part;
+std::string text_of_median_and_p95(const std::vector<double>& times_ms) {
+    return fmt::format("{:.2f} ms (median), {:.2f} (p95)", median(times_ms), quantile(times_ms, 0.95));
 }
 
 /// The number of errors, and the first message; empty if there is no error.
-std::string note_on_errors(std::span<const ScoredRecord> scored, const std::string& detector) {
-    std::size_t answers = 0;
+std::string note_on_errors(std::span<const ScoredRecord> scored) {
     std::size_t errors = 0;
     std::string first;
     for (const ScoredRecord& record : scored) {
-        if (record.record->detector != detector) continue;
-        ++answers;
         if (record.record->answer.status != LaneStatus::error) continue;
         if (++errors == 1) first = record.record->scene + ": " + record.record->answer.message;
     }
     if (errors == 0) return "";
-    return fmt::format("    {} of {} answers are errors, the first to {}\n", errors, answers, first);
+    return fmt::format("    {} of {} answers are errors, the first to {}\n", errors, scored.size(), first);
+}
+
+std::string note_on_latency(const MethodRecord& method, std::span<const ScoredRecord> scored,
+                            const EchoFloor& echo) {
+    if (!method.solver.empty()) {
+        return fmt::format("RLD by a solver from outside, {} formulation; latency includes files and pipes",
+                           to_string(method.formulation.value_or(Formulation::tight)));
+    }
+    if (!method.lanes.empty()) return "latency is self-timed, as the lanes file says";
+    const std::vector<double> own_ms = self_times_ms(scored);
+    return "latency is the round trip of a scene and its answer; that of an echo program is " +
+           (echo.empty() ? "unknown" : text_of_median_and_p95(echo)) +
+           (own_ms.empty() ? "" : "; self-timed " + text_of_median_and_p95(own_ms));
 }
 
 double travel_m(const AnnotatedScene& from, const AnnotatedScene& to) {
@@ -128,17 +131,8 @@ double travel_m(const AnnotatedScene& from, const AnnotatedScene& to) {
 
 }  // namespace
 
-std::set<std::string> OutsideDetectors::courses_of(const std::string& detector, bool cross_validated) const {
-    const auto outside = std::ranges::find(detectors, detector, &OutsideDetector::name);
-    if (outside == detectors.end())
-        return cross_validated ? std::set<std::string>{} : training_courses(detector);
-    if (!outside->card || !outside->card->training_courses) return {};
-    return {outside->card->training_courses->begin(), outside->card->training_courses->end()};
-}
-
-RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
-                           CoursesOf courses_of)
-    : scene_count_(scenes.size()), courses_of_(std::move(courses_of)) {
+RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks)
+    : scene_count_(scenes.size()) {
     std::vector<Truth> truths(scenes.size());
     oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
         const auto track = tracks.find(scenes[i].track);
@@ -187,128 +181,109 @@ void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& l
         score.centre_line_error = centre_line_error(line, truth.centre_line);
 }
 
-std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> records,
-                                              const std::filesystem::path& lanes_file) {
+ScoredMethod RecordScorer::score(MethodRecord method, std::vector<LaneRecord> records,
+                                 const std::filesystem::path& lanes_file) const {
+    ScoredMethod scored{std::move(method), std::move(records)};
+    const std::size_t count = scored.records.size();
     std::vector<const Truth*> truths;
-    truths.reserve(records.size());
-    std::map<std::string, std::size_t> answered;  // by detector and cone-set size
-    std::set<std::string> optimising;             // those among them that state an objective
-    for (const LaneRecord& record : records) {
-        truths.push_back(&truth_of(record, lanes_file));
-        const std::string label = key_of(*truths.back()->scene, record).detector_label();
-        ++answered[label];
-        if (record.answer.optimality) optimising.insert(label);
-    }
-    std::vector<ScoredRecord> all(records.size());
-    std::vector<CentreLine> lines(records.size());
-    std::vector<std::exception_ptr> failures(records.size());
-    Progress progress("scoring " + lanes_file.filename().string(), records.size());
-    oneapi::tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
+    truths.reserve(count);
+    for (const LaneRecord& record : scored.records) truths.push_back(&truth_of(record, lanes_file));
+    const std::string label =
+        count == 0 ? scored.method.name : key_of(*truths[0]->scene, scored.records[0]).detector_label();
+    const bool optimises = std::ranges::any_of(
+        scored.records, [](const LaneRecord& record) { return record.answer.optimality.has_value(); });
+    std::vector<ScoredRecord> all(count);
+    std::vector<CentreLine> lines(count);
+    std::vector<std::exception_ptr> failures(count);
+    Progress progress("scoring " + lanes_file.filename().string(), count);
+    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         progress.advance();
         if (!truths[i]->counts) return;
         try {
-            all[i] = {truths[i]->scene, &records[i], {}};
+            all[i] = {truths[i]->scene, &scored.records[i], {}};
             score(*truths[i], all[i], lines[i]);
         } catch (const InvalidInput& invalid) {
             failures[i] = std::make_exception_ptr(
-                InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
+                InputError(lanes_file, scored.records[i].line, invalid.key(), invalid.what()));
         }
     });
-    std::map<std::string, std::set<std::string>> courses;  // by detector
-    for (const LaneRecord& record : records) {
-        if (!courses.contains(record.detector))
-            courses.emplace(record.detector, courses_of_(record.detector));
-    }
-    std::vector<ScoredRecord> scored;
-    for (std::size_t i = 0; i < records.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         if (failures[i]) std::rethrow_exception(failures[i]);
         if (!truths[i]->counts) continue;
-        if (i > 0 && truths[i - 1]->counts && records[i].detector == records[i - 1].detector &&
-            records[i].nearest == records[i - 1].nearest &&
-            same_lap(*truths[i - 1]->scene, *truths[i]->scene) &&
-            travel_m(*truths[i - 1]->scene, *truths[i]->scene) < kCentreLineLength_m) {
-            all[i].score.steady = is_steady(lines[i - 1], lines[i]);
+        const auto& [scene, record, of_scene, failure] = all[i];
+        SceneScore& score = all[i].score;
+        if (i > 0 && truths[i - 1]->counts && same_lap(*truths[i - 1]->scene, *scene) &&
+            travel_m(*truths[i - 1]->scene, *scene) < kCentreLineLength_m) {
+            score.steady = is_steady(lines[i - 1], lines[i]);
         }
-        all[i].score.trained_on = courses.at(records[i].detector).contains(truths[i]->scene->track);
-        if (records[i].answer.status == LaneStatus::none &&
-            optimising.contains(key_of(*truths[i]->scene, records[i]).detector_label())) {
-            all[i].score.solved_to_optimality = records[i].latency_ms <= kRldTimeLimit_ms;
-        }
-        scored.push_back(std::move(all[i]));
+        score.trained_on = scored.method.training_courses.contains(scene->track);
+        if (optimises && record->answer.status == LaneStatus::none)
+            score.solved_to_optimality = record->latency_ms <= kRldTimeLimit_ms;
+        scored.scores.push_back(std::move(all[i]));
     }
-    for (const auto& [name, count] : answered) {
-        if (count != scene_count_) {
-            throw InputError(lanes_file, 0, "scene",
-                             name + " answers " + std::to_string(count) + " of " +
-                                 std::to_string(scene_count_) + " scenes");
-        }
+    if (count != scene_count_) {
+        throw InputError(lanes_file, 0, "scene",
+                         fmt::format("{} answers {} of {} scenes", label, count, scene_count_));
     }
     return scored;
 }
 
-std::vector<ScoreRow> summarise(std::span<const ScoredRecord> scored) {
+std::vector<ScoreRow> ScoredMethod::rows() const {
     std::vector<KeyedScore> keyed;
-    keyed.reserve(scored.size());
-    for (const ScoredRecord& record : scored)
+    keyed.reserve(scores.size());
+    for (const ScoredRecord& record : scores)
         keyed.push_back({key_of(*record.scene, *record.record), record.score});
     return summarise_by_key(keyed);
 }
 
-void write_scores(std::ostream& output, std::span<const ScoredRecord> scored) {
-    for (const ScoredRecord& record : scored) output << score_line(record).dump() << '\n';
+void write_scores(std::ostream& output, std::span<const ScoredMethod> methods) {
+    for (const ScoredMethod& method : methods) {
+        for (const ScoredRecord& record : method.scores) output << score_line(record).dump() << '\n';
+    }
 }
 
-void write_results(std::ostream& output, std::span<const ScoreRow> rows, std::span<const ScoredRecord> scored,
-                   const OutsideDetectors& outside, const std::string& run) {
+void write_results(std::ostream& output, std::span<const ScoredMethod> methods, const EchoFloor& echo,
+                   const std::string& run) {
     const Provenance origin = provenance();
-    for (const ScoreRow& row : rows) {
-        nlohmann::ordered_json line = nlohmann::ordered_json::parse(summary_json(row));
-        const auto detector = std::ranges::find(outside.detectors, row.key.detector, &OutsideDetector::name);
-        if (detector != outside.detectors.end()) {
-            const auto is_of_row = [&](const ScoredRecord& record) {
-                return key_of(*record.scene, *record.record) == row.key;
-            };
-            line.update(outside_part(*detector, self_times_ms(scored, is_of_row), outside.echo));
+    const auto run_json = nlohmann::ordered_json::parse(run);
+    for (const ScoredMethod& scored : methods) {
+        const MethodRecord& method = scored.method;
+        for (const ScoreRow& row : scored.rows()) {
+            nlohmann::ordered_json line = summary_json(row);
+            if (!method.outside().empty()) {
+                line["outside"] = method.outside();
+                const std::vector<double> own_ms = self_times_ms(scored.scores, &row.key);
+                if (!own_ms.empty()) line["self_timed_ms"] = median_and_p95(own_ms);
+                if (!method.exec.empty() && !echo.empty()) line["echo_floor_ms"] = median_and_p95(echo);
+                if (method.card) line["card"] = JsonFieldWriter::written(*method.card);
+            }
+            line["commit"] = origin.commit;
+            line["compiler"] = origin.compiler;
+            line["machine"] = origin.machine;
+            line["run"] = run_json;
+            output << to_line(line) << '\n';
         }
-        line["commit"] = origin.commit;
-        line["compiler"] = origin.compiler;
-        line["machine"] = origin.machine;
-        line["run"] = nlohmann::ordered_json::parse(run);
-        output << line.dump() << '\n';
     }
 }
 
-std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideDetectors& outside) {
-    if (outside.detectors.empty()) return "";
-    std::string notes = "methods from outside\n";
-    for (const OutsideDetector& detector : outside.detectors) {
-        const auto is_of_detector = [&](const ScoredRecord& record) {
-            return record.record->detector == detector.name;
-        };
-        const std::vector<double> own_ms = self_times_ms(scored, is_of_detector);
-        notes += "  " + detector.name + ": ";
-        if (detector.is_program()) {
-            notes += "latency is the round trip of a scene and its answer; ";
-            notes += outside.echo.empty()
-                         ? "that of an echo program is unknown"
-                         : fmt::format("that of an echo program is {:.2f} ms (median), {:.2f} (p95)",
-                                       median(outside.echo), quantile(outside.echo, 0.95));
-            if (!own_ms.empty()) {
-                notes += fmt::format("; self-timed {:.2f} ms (median), {:.2f} (p95)", median(own_ms),
-                                     quantile(own_ms, 0.95));
-            }
-        } else if (detector.is_solver()) {
-            notes +=
-                fmt::format("RLD by a solver from outside, {} formulation; latency includes files and pipes",
-                            to_string(detector.formulation.value_or(Formulation::tight)));
-        } else {
-            notes += "latency is self-timed, as the lanes file says";
-        }
-        notes += '\n';
-        if (detector.card) notes += "    " + detector.card->summary() + '\n';
-        notes += note_on_errors(scored, detector.name);
+std::string wide_table(std::span<const ScoredMethod> methods, const EchoFloor& echo) {
+    std::vector<ScoreRow> rows;
+    std::map<std::string, std::vector<ScoredRecord>> outside;  // of all cone-set sizes together
+    for (const ScoredMethod& scored : methods) {
+        std::ranges::move(scored.rows(), std::back_inserter(rows));
+        if (!scored.method.outside().empty())
+            std::ranges::copy(scored.scores, std::back_inserter(outside[scored.method.name]));
     }
-    return notes;
+    std::string notes;
+    for (const ScoredMethod& scored : methods) {
+        const MethodRecord& method = scored.method;
+        const auto scores = outside.extract(method.name);  // of its first cone-set size
+        if (scores.empty()) continue;
+        notes += fmt::format("  {}: {}\n", method.name, note_on_latency(method, scores.mapped(), echo));
+        if (method.card) notes += "    " + method.card->summary() + '\n';
+        notes += note_on_errors(scores.mapped());
+    }
+    return score_table(rows) + (notes.empty() ? "" : "methods from outside\n" + notes);
 }
 
 }  // namespace conelane::experiments

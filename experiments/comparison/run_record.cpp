@@ -3,33 +3,90 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/files/json_fields.hpp"
 #include "evaluation/files/parameter_tag.hpp"
-#include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_options_json.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <fstream>
-#include <iterator>
-#include <set>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
+
+// Found by argument-dependent look-up, which does not see an unnamed namespace.
+template <typename Record, typename Wanted>
+concept RecordOf = std::same_as<std::remove_const_t<Record>, Wanted>;
+
+template <RecordOf<MethodRecord::Rld> Rld, typename Fields>
+void fields_of(Rld& rld, Fields& fields) {
+    auto& parameters = rld.parameters;
+    for (const RldParameterField& field : rld_parameter_fields()) fields(field.key, parameters.*field.value);
+    fields("pairing", parameters.pairing);
+    for (const RldParameterField& field : rld_extra_fields()) fields(field.key, parameters.*field.value);
+    fields("use_confidence", parameters.use_confidence);
+    fields("forbid_crossing", parameters.forbid_crossing);
+    fields.maybe("learned_costs", rld.learned_costs);
+}
+
+template <RecordOf<MethodRecord> Method, typename Fields>
+void fields_of(Method& method, Fields& fields) {
+    fields("name", method.name);
+    fields.maybe("exec", method.exec);
+    fields.maybe("lanes", method.lanes);
+    fields.maybe("solver", method.solver);
+    fields.maybe("formulation", method.formulation);
+    fields.maybe("card", method.card);
+    fields.maybe("hash", method.hash);
+    fields.maybe("nearest", method.nearest);
+    fields.maybe("rld_parameters", method.rld_parameters);
+}
+
+template <RecordOf<RunRecord> Run, typename Fields>
+void fields_of(Run& run, Fields& fields) {
+    fields("commit", run.origin.commit);
+    fields("compiler", run.origin.compiler);
+    fields("machine", run.origin.machine);
+    fields("tracks", run.tracks);
+    fields("methods", run.methods);
+    scene_fields(run.scenes, fields);
+    fields("threads", run.threads);
+    fields("candidates", run.candidates);
+    JsonText folds{run.cross_validation};
+    fields.maybe("cross_validation", folds);
+    fields.maybe("program", run.program);
+    fields.maybe("time_limit_ms", run.time_limit_ms);
+    std::vector<std::size_t> shard;
+    if (run.shard.count > 1) shard = {run.shard.index, run.shard.count};
+    fields.maybe("shard", shard);
+    if constexpr (!std::is_const_v<Run>) {
+        run.cross_validation = folds.text;
+        if (shard.size() == 2) run.shard = {shard[0], shard[1]};
+    }
+}
+
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr const char* kRunFile = "run.json";
+
+nlohmann::ordered_json json_of(const RunRecord& record) {
+    return JsonFieldWriter::written(record);
+}
+
+std::set<std::string> courses_of(const MethodRecord& method, bool is_cross_validated) {
+    if (method.outside().empty())
+        return is_cross_validated ? std::set<std::string>{} : training_courses(method.name);
+    if (!method.card || !method.card->training_courses) return {};
+    return {method.card->training_courses->begin(), method.card->training_courses->end()};
+}
 
 bool is_of_a_run(const fs::path& file) {
     const std::string name = file.filename().string();
@@ -49,72 +106,102 @@ std::vector<fs::path> files_of_a_run(const fs::path& directory) {
     return files;
 }
 
-/// The keys in which two records differ; "its record" if the texts differ otherwise.
-std::vector<std::string> differing_keys(const std::string& stored, const std::string& wanted) {
-    const nlohmann::json a = nlohmann::json::parse(stored);
-    const nlohmann::json b = nlohmann::json::parse(wanted);
-    std::set<std::string> keys;
-    for (const auto& [first, second] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-        for (const auto& [key, value] : first->items()) {
-            if (!second->contains(key) || (*second)[key] != value) keys.insert(key);
-        }
+/// The keys in which the stored record differs. Of one that cannot be read, and will be replaced: one key.
+std::vector<std::string> differences_on_disk(const fs::path& directory, const RunRecord& record,
+                                             bool overwrite) {
+    try {
+        return read_run_record(directory).differences(record);
+    } catch (const InputError&) {
+        if (!overwrite) throw;
+        return {kRunFile};
     }
-    if (keys.empty()) keys.insert("its record");
-    return {keys.begin(), keys.end()};
-}
-
-nlohmann::ordered_json to_json(const RldParameters& parameters) {
-    nlohmann::ordered_json json;
-    for (const RldParameterField& field : rld_parameter_fields()) {
-        json[std::string(field.key)] = parameters.*field.value;
-    }
-    json["pairing"] = to_string(parameters.pairing);
-    for (const RldParameterField& field : rld_extra_fields()) {
-        json[std::string(field.key)] = parameters.*field.value;
-    }
-    json["use_confidence"] = parameters.use_confidence;
-    json["forbid_crossing"] = parameters.forbid_crossing;
-    if (parameters.learned_costs) json["learned_costs"] = tag_of("", parameters).hash.value();
-    return json;
-}
-
-nlohmann::ordered_json to_json(const Method& method, const DetectorOptions& options) {
-    nlohmann::ordered_json json{{"name", method.name}};
-    if (method.outside) json = nlohmann::ordered_json::parse(outside_detector_json(*method.outside));
-    if (method.is_lanes_file()) {
-        json["hash"] = file_hash(method.outside->source);
-        if (json["hash"].empty()) throw InputError(method.outside->source, 0, "", "cannot be read");
-    }
-    if (method.nearest) json["nearest"] = *method.nearest;
-    if (method.is_rld()) json["rld_parameters"] = to_json(method.rld_parameters(options));
-    return json;
 }
 
 }  // namespace
 
-std::string run_record(const ComparisonOptions& options) {
-    const Provenance origin = provenance();
-    nlohmann::ordered_json methods = nlohmann::ordered_json::array();
-    for (const Method& method : options.methods) methods.push_back(to_json(method, options.run.detector));
-    nlohmann::ordered_json record{{"commit", origin.commit},
-                                  {"compiler", origin.compiler},
-                                  {"machine", origin.machine},
-                                  {"tracks", options.tracks},
-                                  {"methods", methods}};
-    record.update(scene_options_json(options.scenes));
-    record["threads"] = options.run.threads;
-    record["candidates"] = options.run.limits.keep_candidates;
-    if (!options.cross_validation.empty())
-        record["cross_validation"] = nlohmann::ordered_json::parse(options.cross_validation);
-    if (origin.commit == "unknown" || origin.commit.ends_with("-dirty"))
-        record["program"] = file_hash("/proc/self/exe");
-    if (std::isfinite(options.run.limits.time_limit_ms))
-        record["time_limit_ms"] = options.run.limits.time_limit_ms;
-    if (options.shard.count > 1) record["shard"] = {options.shard.index, options.shard.count};
-    return record.dump();
+std::string MethodRecord::outside() const {
+    return !exec.empty() ? "exec" : !lanes.empty() ? "lanes" : !solver.empty() ? "solver" : "";
 }
 
-FolderLock open_run(const fs::path& directory, const std::string& record, bool overwrite) {
+std::string MethodRecord::lanes_file() const {
+    return nearest ? fmt::format("{}.n{:03}.lanes.jsonl", name, *nearest) : name + ".lanes.jsonl";
+}
+
+MethodRecord record_of(const Method& method, const DetectorOptions& options, bool is_cross_validated) {
+    MethodRecord record{.name = method.name, .nearest = method.nearest};
+    if (const auto& outside = method.outside) {
+        std::string& source = outside->is_program()      ? record.exec
+                              : outside->is_lanes_file() ? record.lanes
+                                                         : record.solver;
+        source = outside->source;
+        record.formulation = outside->formulation;
+        record.card = outside->card;
+    }
+    if (method.is_lanes_file()) {
+        record.hash = file_hash(record.lanes);
+        if (record.hash.empty()) throw InputError(record.lanes, 0, "", "cannot be read");
+    }
+    if (method.is_rld()) {
+        RldParameters parameters = method.rld_parameters(options);
+        std::string learned;
+        if (parameters.learned_costs) learned = tag_of("", parameters).hash.value();
+        record.rld_parameters = {std::move(parameters), learned};
+    }
+    record.training_courses = courses_of(record, is_cross_validated);
+    return record;
+}
+
+RunRecord record_of(const ComparisonOptions& options) {
+    RunRecord record{.origin = provenance(),
+                     .tracks = options.tracks,
+                     .methods = {},
+                     .scenes = as_recorded(options.scenes),
+                     .threads = options.run.threads,
+                     .candidates = options.run.limits.keep_candidates,
+                     .cross_validation = options.cross_validation,
+                     .shard = options.shard};
+    for (const Method& method : options.methods)
+        record.methods.push_back(record_of(method, options.run.detector, !options.cross_validation.empty()));
+    const std::string& commit = record.origin.commit;
+    if (commit == "unknown" || commit.ends_with("-dirty")) record.program = file_hash("/proc/self/exe");
+    if (std::isfinite(options.run.limits.time_limit_ms))
+        record.time_limit_ms = options.run.limits.time_limit_ms;
+    return record;
+}
+
+std::string RunRecord::text() const {
+    return json_of(*this).dump();
+}
+
+std::vector<std::string> RunRecord::differences(const RunRecord& other) const {
+    const nlohmann::ordered_json own = json_of(*this);
+    const nlohmann::ordered_json others = json_of(other);
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : own.items()) {
+        if (!others.contains(key) || nlohmann::json(others[key]) != nlohmann::json(value))
+            keys.push_back(key);
+    }
+    for (const auto& [key, value] : others.items()) {
+        if (!own.contains(key)) keys.push_back(key);
+    }
+    return keys;
+}
+
+RunRecord read_run_record(const fs::path& directory) {
+    const fs::path file = directory / kRunFile;
+    std::ifstream stream(file);
+    std::string line;
+    if (!std::getline(stream, line)) throw InputError(file, 0, "", "cannot be read");
+    RunRecord record;
+    with_json_line(line, file, 1, [&](const JsonNode& json) { JsonFieldReader::read(json, record); });
+    if (const auto json = nlohmann::json::parse(line); json.contains("cross_validation"))
+        record.cross_validation = json["cross_validation"].dump();
+    for (MethodRecord& method : record.methods)
+        method.training_courses = courses_of(method, !record.cross_validation.empty());
+    return record;
+}
+
+FolderLock open_run(const fs::path& directory, const RunRecord& record, bool overwrite) {
     std::error_code failure;
     fs::create_directories(directory, failure);
     if (failure) throw InputError(directory, 0, "", "cannot be made: " + failure.message());
@@ -122,18 +209,12 @@ FolderLock open_run(const fs::path& directory, const std::string& record, bool o
     remove_abandoned_files(directory);
     const std::vector<fs::path> earlier = files_of_a_run(directory);
     if (fs::exists(directory / kRunFile)) {
-        // A record that cannot be read will be replaced, so it is ignored.
-        std::string stored;
-        try {
-            stored = read_run_record(directory);
-        } catch (const InputError&) {
-            if (!overwrite) throw;
-        }
-        if (stored == record) return lock;
+        const std::vector<std::string> differences = differences_on_disk(directory, record, overwrite);
+        if (differences.empty()) return lock;
         if (!overwrite) {
             throw InputError(directory, 0, "",
                              fmt::format("holds a comparison that differs in {}; --overwrite replaces it",
-                                         fmt::join(differing_keys(stored, record), ", ")));
+                                         fmt::join(differences, ", ")));
         }
     } else if (!earlier.empty() && !overwrite) {
         throw InputError(directory, 0, "",
@@ -142,18 +223,9 @@ FolderLock open_run(const fs::path& directory, const std::string& record, bool o
     }
     for (const fs::path& file : earlier) fs::remove_all(file);
     AtomicFile file(directory / kRunFile);
-    file.stream() << record << '\n';
+    file.stream() << record.text() << '\n';
     file.commit();
     return lock;
-}
-
-std::string read_run_record(const fs::path& directory) {
-    const fs::path file = directory / kRunFile;
-    std::ifstream stream(file);
-    std::string record;
-    if (!std::getline(stream, record)) throw InputError(file, 0, "", "cannot be read");
-    with_json_line(record, file, 1, [](const JsonNode& /*checked*/) {});
-    return record;
 }
 
 }  // namespace conelane::experiments

@@ -45,27 +45,21 @@ struct Tally {
     }
 };
 
+/// A rate or a cone-set size, in a group of what its columns have in common: the groups in the order in which
+/// they first appear, their columns ascending.
+struct Column {
+    std::size_t group;
+    std::optional<double> value;
+    auto operator<=>(const Column&) const = default;
+};
+using Block = std::vector<Column>;
+
 struct Row {
     std::string label;
     bool is_trained = false;
-    Tally all;
-    std::map<std::size_t, Tally> of_column;
+    Tally all = {};
+    std::map<Column, Tally> of_column = {};
 };
-
-/// What a group of columns has in common.
-struct GroupKey {
-    std::string condition;
-    std::optional<double> rate;  ///< for groups of cone-set sizes
-    bool operator==(const GroupKey&) const = default;
-};
-
-struct Column {
-    GroupKey group;
-    std::optional<double> value;  ///< a rate, or a cone-set size
-    bool operator==(const Column&) const = default;
-};
-
-using Places = std::vector<std::size_t>;
 
 std::string cut(std::string text, std::size_t width) {
     if (text.size() <= width) return text;
@@ -85,38 +79,44 @@ std::string percent_title(double share) {
 
 class Summary {
   public:
-    explicit Summary(std::span<const ScoredRecord> scored) {
-        std::map<std::string, std::set<std::optional<std::size_t>>> sizes;
-        for (const ScoredRecord& record : scored)
-            sizes[record.record->detector].insert(record.record->nearest);
-        by_size_ =
-            std::ranges::any_of(sizes, [](const auto& of_method) { return of_method.second.size() > 1; });
-        for (const ScoredRecord& record : scored) add(record);
-        sort();
+    explicit Summary(std::span<const ScoredMethod> methods) {
+        std::set<std::string> names;
+        for (const ScoredMethod& method : methods)
+            by_size_ = !names.insert(method.method.name).second || by_size_;
+        for (const ScoredMethod& method : methods) {
+            for (const ScoredRecord& record : method.scores) add(record);
+        }
+        // Best first; methods without known scenes last.
+        std::ranges::stable_sort(rows_, [](const Row& a, const Row& b) {
+            if (a.all.known == 0 || b.all.known == 0) return a.all.known > b.all.known;
+            return a.all.percent(a.all.usable) > b.all.percent(b.all.usable);
+        });
+        for (const Row& row : rows_)
+            label_width_ = std::max(label_width_, row.label.size() + (row.is_trained ? 1 : 0));
+        label_width_ = std::min(label_width_, kMaxLabelWidth);
     }
 
     [[nodiscard]] std::string text(const std::vector<std::string>& notes) const {
-        const std::vector<Places> blocks = fitting_blocks();
+        if (rows_.empty()) return "";
+        const std::vector<Block> blocks = fitting_blocks();
         const std::size_t blocks_count = blocks.size() * (by_size_ ? 2 : 1);
         const std::size_t tables = blocks_count + 1;  // and the line of failures
-        bool any_trained = false;
-        for (const Row& row : rows_) any_trained = any_trained || row.is_trained;
+        const bool any_trained = std::ranges::any_of(rows_, &Row::is_trained);
         const std::size_t fixed =
             1 + 3 * blocks_count + 2 + notes.size() + (any_trained ? 1 : 0) + 1 + kLinesBelowSummary;
         const std::size_t room = fixed < kSummaryLines ? (kSummaryLines - fixed) / tables : 0;
-        const std::size_t rows = std::min(rows_.size(), std::max(room, kMinRows));
+        const auto shown = std::span(rows_).first(std::min(rows_.size(), std::max(room, kMinRows)));
 
         std::string text = cut(headline(), kSummaryColumns) + '\n';
         for (std::size_t i = 0; i < blocks.size(); ++i)
-            text += usable_block(blocks[i], rows, i == 0 && !by_size_);
-        if (by_size_) {
-            for (const Places& block : blocks) text += latency_block(block, rows);
-        }
+            text += table(blocks[i], shown, by_size_ ? "usable %" : "", usable_text, i == 0 && !by_size_);
+        for (std::size_t i = 0; by_size_ && i < blocks.size(); ++i)
+            text += table(blocks[i], shown, "median ms", latency_text, false);
         text += "Not usable, in % of the scenes, and why\n";
-        for (std::size_t i = 0; i < rows; ++i) text += failures_line(rows_[i]);
+        for (const Row& row : shown) text += failures_line(row);
         text += '\n';
         if (any_trained) text += "* with courses that the method has learned from: no held-out figure\n";
-        text += left_out_line(blocks, rows);
+        text += left_out_line(blocks, shown.size());
         for (const std::string& note : notes) text += cut(note, kSummaryColumns) + '\n';
         return text;
     }
@@ -128,85 +128,50 @@ class Summary {
         std::string label = record.record->detector;
         if (!by_size_ && nearest) label += fmt::format(" n={}", *nearest);
         auto row = std::ranges::find(rows_, label, &Row::label);
-        if (row == rows_.end()) row = rows_.insert(rows_.end(), Row{label, false, {}, {}});
-        Column column{{scene.condition, {}}, scene.false_positive_rate};
-        ranges_m_.insert(scene.range_m);
+        if (row == rows_.end()) row = rows_.insert(rows_.end(), Row{label});
+        Group group{scene.condition, {}};
+        Column column{0, scene.false_positive_rate};
         if (by_size_) {
-            column.group.rate = scene.false_positive_rate;
+            group.second = scene.false_positive_rate;
             column.value.reset();
             if (nearest) column.value = static_cast<double>(*nearest);
         }
-        std::size_t place = std::ranges::find(columns_, column) - columns_.begin();
-        if (place == columns_.size()) columns_.push_back(column);
+        column.group = static_cast<std::size_t>(std::ranges::find(groups_, group) - groups_.begin());
+        if (column.group == groups_.size()) groups_.push_back(group);
+        columns_.insert(column);
+        ranges_m_.insert(scene.range_m);
         row->is_trained = row->is_trained || record.score.trained_on;
         row->all.add(record);
-        row->of_column[place].add(record);
-    }
-
-    /// Best first; methods without known scenes last.
-    void sort() {
-        std::ranges::stable_sort(rows_, [](const Row& a, const Row& b) {
-            if (a.all.known == 0 || b.all.known == 0) return a.all.known > b.all.known;
-            return a.all.percent(a.all.usable) > b.all.percent(b.all.usable);
-        });
-        // Groups in the order in which they first appear, their columns ascending.
-        std::vector<GroupKey> groups;
-        for (const Column& column : columns_) {
-            if (std::ranges::find(groups, column.group) == groups.end()) groups.push_back(column.group);
-        }
-        order_.resize(columns_.size());
-        std::iota(order_.begin(), order_.end(), 0U);
-        std::ranges::stable_sort(order_, {}, [&](std::size_t place) {
-            const Column& column = columns_[place];
-            return std::pair(std::ranges::find(groups, column.group) - groups.begin(), column.value);
-        });
-    }
-
-    [[nodiscard]] std::size_t label_width() const {
-        std::size_t width = std::string_view("method").size();
-        for (const Row& row : rows_) width = std::max(width, row.label.size() + (row.is_trained ? 1 : 0));
-        return std::min(width, kMaxLabelWidth);
+        row->of_column[column].add(record);
     }
 
     /// Places columns side by side while there is room, then in a block below; columns that are left over
     /// have no place.
-    [[nodiscard]] std::vector<Places> fitting_blocks() const {
-        std::vector<Places> blocks(1);
+    [[nodiscard]] std::vector<Block> fitting_blocks() const {
+        std::vector<Block> blocks(1);
         std::size_t used = 0;
         const auto room_of = [&](std::size_t block) {
             const bool has_latency = block == 0 && !by_size_;
-            return kSummaryColumns - label_width() - (has_latency ? 2 * kLatencyWidth : 0);
+            return kSummaryColumns - label_width_ - (has_latency ? 2 * kLatencyWidth : 0);
         };
-        for (std::size_t i = 0; i < order_.size(); ++i) {
-            const bool begins_group =
-                blocks.back().empty() || !(columns_[order_[i]].group == columns_[order_[i - 1]].group);
+        for (const Column& column : columns_) {
             // A group that fits into one block is not split.
-            std::size_t needed = kCellWidth;
-            if (begins_group) {
-                std::size_t members = 0;
-                for (const std::size_t place : order_) {
-                    if (columns_[place].group == columns_[order_[i]].group) ++members;
-                }
-                const std::size_t whole = kGroupGap.size() + members * kCellWidth;
-                needed =
-                    whole <= room_of(1) && !blocks.back().empty() ? whole : kGroupGap.size() + kCellWidth;
-            }
+            const std::size_t whole =
+                kGroupGap.size() + kCellWidth * static_cast<std::size_t>(std::ranges::count(
+                                                    columns_, column.group, &Column::group));
+            const bool is_first = blocks.back().empty();
+            const bool begins_group = is_first || blocks.back().back().group != column.group;
+            std::size_t needed = kCellWidth + (begins_group ? kGroupGap.size() : 0);
+            if (begins_group && !is_first && whole <= room_of(1)) needed = whole;
             if (used + needed > room_of(blocks.size() - 1)) {
                 if (blocks.size() == (by_size_ ? 1 : kMaxBlocks)) break;
                 blocks.emplace_back();
                 used = 0;
             }
             used += kCellWidth + (begins_group || blocks.back().empty() ? kGroupGap.size() : 0);
-            blocks.back().push_back(order_[i]);
+            blocks.back().push_back(column);
         }
         return blocks;
-    }
-
-    [[nodiscard]] std::string group_title(const GroupKey& group, std::size_t width) const {
-        std::string title = group.condition;
-        const auto append = [&](const std::string& part) { title += (title.empty() ? "" : ", ") + part; };
-        if (group.rate && by_size_) append(percent_title(*group.rate) + " %");
-        return cut(title, width);
     }
 
     [[nodiscard]] std::string headline() const {
@@ -225,75 +190,63 @@ class Summary {
         return column.value ? percent_title(*column.value) : "-";
     }
 
-    /// The two lines above a block.
-    [[nodiscard]] std::string header(const Places& block, const std::string& what, bool with_latency) const {
-        std::string groups = fmt::format("{:<{}}", what, label_width());
-        std::string titles = fmt::format("{:<{}}", "method", label_width());
-        for (std::size_t begin = 0; begin < block.size();) {
-            const GroupKey& group = columns_[block[begin]].group;
-            std::size_t end = begin;
-            titles += kGroupGap;
-            for (; end < block.size() && columns_[block[end]].group == group; ++end)
-                titles += fmt::format("{:>{}}", cut(column_title(columns_[block[end]]), kCellWidth - 1),
-                                      kCellWidth);
-            const std::size_t width = (end - begin) * kCellWidth;
-            groups += fmt::format("{}{:>{}}", kGroupGap, group_title(group, width), width);
-            begin = end;
-        }
-        if (with_latency) {
-            groups += fmt::format("{:>{}}", "latency in ms", 2 * kLatencyWidth);
-            titles += fmt::format("{:>{}}{:>{}}", "median", kLatencyWidth, "p99", kLatencyWidth);
-        }
-        return groups + '\n' + titles + '\n';
+    [[nodiscard]] std::string group_title(std::size_t group) const {
+        const auto& [condition, rate] = groups_[group];
+        if (!rate) return condition;
+        return condition + (condition.empty() ? "" : ", ") + percent_title(*rate) + " %";
     }
 
     template <typename Text>
-    [[nodiscard]] std::string cells(const Row& row, const Places& block, Text text) const {
-        std::string line = fmt::format("{:<{}}", label_of(row), label_width());
+    [[nodiscard]] std::string line(std::string_view label, const Block& block, const Text& text) const {
+        std::string line = fmt::format("{:<{}}", label, label_width_);
         for (std::size_t i = 0; i < block.size(); ++i) {
-            if (i == 0 || !(columns_[block[i]].group == columns_[block[i - 1]].group)) line += kGroupGap;
-            const auto tally = row.of_column.find(block[i]);
-            line +=
-                fmt::format("{:>{}}", tally == row.of_column.end() ? "-" : text(tally->second), kCellWidth);
+            if (i == 0 || block[i].group != block[i - 1].group) line += kGroupGap;
+            line += fmt::format("{:>{}}", text(block[i]), kCellWidth);
         }
         return line;
     }
 
-    [[nodiscard]] std::string usable_block(const Places& block, std::size_t rows, bool with_latency) const {
-        std::string text = header(block, by_size_ ? "usable %" : "", with_latency);
-        for (std::size_t i = 0; i < rows; ++i) {
-            text += cells(rows_[i], block, [](const Tally& tally) {
-                return tally.known == 0 ? "-" : fmt::format("{:.1f}", tally.percent(tally.usable));
-            });
-            if (with_latency) {
-                const std::vector<double>& all_ms = rows_[i].all.latencies_ms;
-                text += fmt::format("{:>{}.2f}{:>{}.2f}", median(all_ms), kLatencyWidth,
-                                    quantile(all_ms, 0.99), kLatencyWidth);
-            }
-            text += '\n';
-        }
-        return text + '\n';
+    static std::string usable_text(const Tally& tally) {
+        return tally.known == 0 ? "-" : fmt::format("{:.1f}", tally.percent(tally.usable));
+    }
+    static std::string latency_text(const Tally& tally) {
+        const double median_ms = median(tally.latencies_ms);
+        return fmt::format("{:.{}f}", median_ms, median_ms < 100.0 ? 2 : 0);
     }
 
-    [[nodiscard]] std::string latency_block(const Places& block, std::size_t rows) const {
-        std::string text = header(block, "median ms", false);
-        for (std::size_t i = 0; i < rows; ++i) {
-            text += cells(rows_[i], block, [](const Tally& tally) {
-                const double median_ms = median(tally.latencies_ms);
-                return fmt::format("{:.{}f}", median_ms, median_ms < 100.0 ? 2 : 0);
-            });
-            text += '\n';
+    /// Two lines of titles and a line for each method.
+    [[nodiscard]] std::string table(const Block& block, std::span<const Row> rows, std::string_view what,
+                                    std::string (*text_of)(const Tally&), bool with_latency) const {
+        std::string text = fmt::format("{:<{}}", what, label_width_);
+        for (std::size_t begin = 0, end = 0; begin < block.size(); begin = end) {
+            while (end < block.size() && block[end].group == block[begin].group) ++end;
+            const std::size_t width = (end - begin) * kCellWidth;
+            text += fmt::format("{}{:>{}}", kGroupGap, cut(group_title(block[begin].group), width), width);
         }
-        return text + '\n';
+        if (with_latency) text += fmt::format("{:>{}}", "latency in ms", 2 * kLatencyWidth);
+        text += '\n' + line("method", block,
+                            [&](const Column& column) { return cut(column_title(column), kCellWidth - 1); });
+        if (with_latency) text += fmt::format("{:>{}}{:>{}}", "median", kLatencyWidth, "p99", kLatencyWidth);
+        for (const Row& row : rows) {
+            text += '\n' + line(label_of(row), block, [&](const Column& column) {
+                        const auto tally = row.of_column.find(column);
+                        return tally == row.of_column.end() ? "-" : text_of(tally->second);
+                    });
+            if (!with_latency) continue;
+            const std::vector<double>& all_ms = row.all.latencies_ms;
+            text += fmt::format("{:>{}.2f}{:>{}.2f}", median(all_ms), kLatencyWidth, quantile(all_ms, 0.99),
+                                kLatencyWidth);
+        }
+        return text + "\n\n";
     }
 
-    [[nodiscard]] std::string label_of(const Row& row) const {
+    [[nodiscard]] static std::string label_of(const Row& row) {
         return row.is_trained ? cut(row.label, kMaxLabelWidth - 1) + '*' : cut(row.label, kMaxLabelWidth);
     }
 
     /// The causes by their shares; equal shares in the order of the causes; as many as there is room for.
     [[nodiscard]] std::string failures_line(const Row& row) const {
-        std::string line = fmt::format("{:<{}}{}", label_of(row), label_width(), kGroupGap);
+        std::string line = fmt::format("{:<{}}{}", label_of(row), label_width_, kGroupGap);
         if (row.all.known == 0) return line + "    -\n";
         line += fmt::format("{:>5.1f}", row.all.percent(row.all.known - row.all.usable));
         std::vector<std::size_t> causes(kLaneFailureCount);
@@ -317,9 +270,9 @@ class Summary {
         return line + '\n';
     }
 
-    [[nodiscard]] std::string left_out_line(const std::vector<Places>& blocks, std::size_t rows) const {
+    [[nodiscard]] std::string left_out_line(std::span<const Block> blocks, std::size_t rows) const {
         std::size_t shown = 0;
-        for (const Places& block : blocks) shown += block.size();
+        for (const Block& block : blocks) shown += block.size();
         std::string text;
         const auto append = [&](std::size_t count, const char* what) {
             if (count == 0) return;
@@ -330,28 +283,32 @@ class Summary {
         return text.empty() ? "" : text + ": see the wide table\n";
     }
 
+    using Group = std::pair<std::string, std::optional<double>>;  ///< condition; with sizes also the rate
     bool by_size_ = false;  ///< columns are cone-set sizes instead of rates
     std::set<std::optional<double>> ranges_m_;
     std::vector<Row> rows_;
-    std::vector<Column> columns_;  ///< in the order in which they are first met
-    Places order_;                 ///< order in which the columns are shown
+    std::vector<Group> groups_;
+    std::set<Column> columns_;
+    std::size_t label_width_ = std::string_view("method").size();
 };
 
 }  // namespace
 
-std::string summary(std::span<const ScoredRecord> scored, const std::vector<std::string>& notes) {
-    if (scored.empty()) return "";
-    return Summary(scored).text(notes);
-}
-
-std::vector<std::string> summary_notes(const OutsideDetectors& outside, const LeftOutScenes& left_out) {
-    std::vector<std::string> notes;
+std::string summary(std::span<const ScoredMethod> methods, const LeftOutScenes& left_out) {
     std::string names;
-    for (const OutsideDetector& method : outside.detectors)
-        names += (names.empty() ? "" : ", ") + method.name;
+    for (const ScoredMethod& scored : methods) {
+        const MethodRecord& method = scored.method;
+        const bool is_first = &scored == &methods.front() || (&scored - 1)->method.name != method.name;
+        if (!method.outside().empty() && is_first) names += (names.empty() ? "" : ", ") + method.name;
+    }
+    std::vector<std::string> notes;
     if (!names.empty()) notes.push_back("from outside, with notes below the wide table: " + names);
     if (const std::string note = note_on(left_out); !note.empty()) notes.push_back(note);
-    return notes;
+    return summary(methods, notes);
+}
+
+std::string summary(std::span<const ScoredMethod> methods, const std::vector<std::string>& notes) {
+    return Summary(methods).text(notes);
 }
 
 }  // namespace conelane::experiments

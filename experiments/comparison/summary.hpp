@@ -24,11 +24,9 @@ inline constexpr std::size_t kLinesBelowSummary = 3;
 /// If a method has several cone-set sizes, the columns are the sizes, for the usable lanes and for the median
 /// latency. Columns and methods without room are counted; the wide table has them. `notes` are lines without
 /// newline, each cut if it is too long. Empty if nothing was scored.
-[[nodiscard]] std::string summary(std::span<const ScoredRecord> scored,
-                                  const std::vector<std::string>& notes = {});
-
-/// The notes below a summary: methods from outside, and scenes that were left out.
-[[nodiscard]] std::vector<std::string> summary_notes(const OutsideDetectors& outside,
-                                                     const LeftOutScenes& left_out);
+[[nodiscard]] std::string summary(std::span<const ScoredMethod> methods,
+                                  const std::vector<std::string>& notes);
+/// The same, with notes on methods from outside and on scenes that were left out.
+[[nodiscard]] std::string summary(std::span<const ScoredMethod> methods, const LeftOutScenes& left_out);
 
 }  // namespace conelane::experiments

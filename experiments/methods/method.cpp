@@ -179,10 +179,6 @@ RldParameters Method::rld_parameters(const DetectorOptions& options) const {
     return parameters;
 }
 
-std::string Method::lanes_file() const {
-    return nearest ? fmt::format("{}.n{:03}.lanes.jsonl", name, *nearest) : name + ".lanes.jsonl";
-}
-
 DetectorMaker Method::maker(const RunOptions& options) const {
     if (maker_of_folds) return maker_of_folds(options);
     if (programs) {

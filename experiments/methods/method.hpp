@@ -68,8 +68,6 @@ struct Method {
     [[nodiscard]] bool takes_weights() const { return recipe != nullptr && recipe->takes_weights(); }
     /// The RLD parameters under these options; a solver from outside has the defaults.
     [[nodiscard]] RldParameters rld_parameters(const DetectorOptions& options) const;
-    /// Name of its lanes file: NAME.lanes.jsonl or NAME.n012.lanes.jsonl.
-    [[nodiscard]] std::string lanes_file() const;
 
     /// How its detectors are made. If the independent checker rejects a lane of RLD, its status becomes error
     /// (see check_answer; not timed). A program from outside is timed by its round trip, gets only the

@@ -6,7 +6,6 @@
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "evaluation/scoring/score_table.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/comparison/summary.hpp"
 #include "experiments/methods/method.hpp"
@@ -15,10 +14,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
-#include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -39,33 +35,61 @@ struct ScoreOptions {
     bool wide = false;
 };
 
-/// A lanes file with its records, and the detector from outside if it was named as one.
-struct LanesFile {
+/// Answers of a method in a lanes file.
+struct Answers {
+    MethodRecord method;
     std::string file;
-    std::optional<OutsideDetector> detector;
     std::vector<LaneRecord> records;
 };
 
-std::vector<LanesFile> read_all(const ScoreOptions& options, std::span<const AnnotatedScene> scenes) {
-    if (options.lanes.empty() && options.detectors.empty())
-        throw InvalidInput("--lanes", "is required, or --methods lanes:NAME=FILE");
+auto find_answers(std::vector<Answers>& all, const MethodRecord& method) {
+    return std::ranges::find_if(all, [&](const Answers& answers) {
+        return answers.method.name == method.name && answers.method.nearest == method.nearest;
+    });
+}
+
+/// A method of one name and cone-set size may be in one file only.
+void add_answers(Answers added, std::vector<Answers>& all) {
+    if (const auto known = find_answers(all, added.method); known != all.end()) {
+        throw InputError(added.file, added.records.front().line, "method",
+                         "lanes of '" + added.method.name + "' are in " + known->file + " too");
+    }
+    all.push_back(std::move(added));
+}
+
+/// The answers of a lanes file by their methods.
+std::vector<Answers> answers_in(const std::string& file, std::span<const AnnotatedScene> scenes) {
     std::unordered_map<std::string, const Scene*> scene_of;
     for (const AnnotatedScene& annotated : scenes) scene_of.emplace(annotated.scene.id, &annotated.scene);
-    std::vector<LanesFile> all;
-    for (const std::string& file : options.lanes) {
-        all.push_back({file, {}, read_lanes(file)});
-        if (all.back().records.empty()) throw InputError(file, 0, "", "holds no lane");
-        for (LaneRecord& record : all.back().records) {
-            const auto scene = scene_of.find(record.scene);
-            if (scene != scene_of.end()) snap_to_cones(record, *scene->second);
+    std::vector<Answers> of_file;
+    for (LaneRecord& record : read_lanes(file)) {
+        if (const auto scene = scene_of.find(record.scene); scene != scene_of.end())
+            snap_to_cones(record, *scene->second);
+        MethodRecord method{.name = record.detector, .nearest = record.nearest};
+        auto known = find_answers(of_file, method);
+        if (known == of_file.end()) {
+            method.training_courses = training_courses(method.name);
+            known = of_file.insert(known, {std::move(method), file, {}});
         }
+        known->records.push_back(std::move(record));
+    }
+    if (of_file.empty()) throw InputError(file, 0, "", "holds no lane");
+    return of_file;
+}
+
+std::vector<Answers> read_all(const ScoreOptions& options, std::span<const AnnotatedScene> scenes) {
+    if (options.lanes.empty() && options.detectors.empty())
+        throw InvalidInput("--lanes", "is required, or --methods lanes:NAME=FILE");
+    std::vector<Answers> all;
+    for (const std::string& file : options.lanes) {
+        for (Answers& answers : answers_in(file, scenes)) add_answers(std::move(answers), all);
     }
     for (const std::string& text : split_detectors(options.detectors)) {
         if (!text.starts_with("lanes:"))
             throw InvalidInput("--methods", "'" + text + "' is not of the form lanes:NAME=FILE");
-        Method method = parse_method(text);
-        std::vector<LaneRecord> records = read_finished_lanes(*method.outside, scenes);
-        all.push_back({method.outside->source, std::move(method.outside), std::move(records)});
+        const Method method = parse_method(text);
+        add_answers({record_of(method), method.outside->source, read_finished_lanes(*method.outside, scenes)},
+                    all);
     }
     return all;
 }
@@ -79,36 +103,22 @@ void score_all(const ScoreOptions& options) {
         tracks = read_track_boundaries(companion);
         left_out = read_left_out(companion);
     }
-    std::vector<LanesFile> files = read_all(options, scenes);
-    OutsideDetectors outside;
-    RecordScorer scorer(scenes, tracks,
-                        [&](const std::string& detector) { return outside.courses_of(detector, false); });
-    std::vector<ScoredRecord> scored;
-    std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by detector
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        const auto& [file, detector, records] = files[i];
-        if (detector) outside.detectors.push_back(*detector);
-        for (const LaneRecord& record : records) {
-            const std::size_t first = file_of.try_emplace({record.detector, record.nearest}, i).first->second;
-            if (first == i) continue;
-            throw InputError(file, record.line, "method",
-                             "lanes of '" + record.detector + "' are in " + files[first].file + " too");
-        }
-        std::ranges::move(scorer.score(records, file), std::back_inserter(scored));
+    const RecordScorer scorer(scenes, tracks);
+    std::vector<ScoredMethod> scored;
+    for (Answers& answers : read_all(options, scenes)) {
+        scored.push_back(scorer.score(std::move(answers.method), std::move(answers.records), answers.file));
     }
-    const std::vector<ScoreRow> rows = summarise(scored);
     if (!options.json.empty()) {
         nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
         if (!options.detectors.empty()) run["lanes_of_methods"] = options.detectors;
         AtomicFile output(options.json);
-        write_results(output.stream(), rows, scored, outside, run.dump());
+        write_results(output.stream(), scored, {}, run.dump());
         output.commit();
     }
     if (options.wide) {
-        fmt::print("{}{}{}", score_table(rows), outside_notes(scored, outside), table_note_on(left_out));
+        fmt::print("{}{}", wide_table(scored, {}), table_note_on(left_out));
     } else {
-        fmt::print("{}all measures: conelane score --wide\n",
-                   summary(scored, summary_notes(outside, left_out)));
+        fmt::print("{}all measures: conelane score --wide\n", summary(scored, left_out));
     }
     if (tracks.empty()) fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());
 }

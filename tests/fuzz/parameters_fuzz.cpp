@@ -1,10 +1,11 @@
 // Readers of everything that tells a run what to do: RLD parameters, those of other detectors, the
-// cards of detectors, the record of a tuning, round trips of an echo, and the names of detectors from
-// outside.
+// cards of detectors, the records of a run and of a tuning, round trips of an echo, and the names of
+// detectors from outside.
 
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
 #include "experiments/comparison/echo_floor.hpp"
+#include "experiments/comparison/run_record.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
 #include "experiments/tuning/detector_tuning.hpp"
@@ -43,7 +44,8 @@ void read_all(std::string_view bytes) {
     answers([&] { (void)experiments::read_echo_floor(file); });
     answers([&] { (void)experiments::read_tuning_record(file); });
     const std::string text(bytes);
-    answers([&] { (void)outside_detectors_of_record(text); });
+    folder.write("run.json", bytes);
+    answers([&] { (void)experiments::read_run_record(folder.path()); });
     answers([&] { (void)experiments::parse_method(text); });
     (void)split_detectors({text});
 }

@@ -40,9 +40,6 @@ json to_ft_fsd(const Frame& frame) {
 class FollowCommand : public ProgramFixture {
   protected:
     Outcome follow(const std::string& arguments) { return run("drive " + arguments); }
-    void expect_refused(const std::string& arguments, const std::vector<std::string>& names) {
-        ProgramFixture::expect_refused("drive " + arguments, names);
-    }
     /// The oval at 6 m/s, with ten frames a second.
     static std::vector<Frame> frames(double to_m, bool with_ids = true) {
         std::vector<Frame> all;
@@ -59,8 +56,7 @@ class FollowCommand : public ProgramFixture {
     }
     std::vector<json> plans_in(const std::string& text) {
         std::vector<json> plans;
-        std::istringstream lines(text);
-        for (std::string line; std::getline(lines, line);) plans.push_back(json::parse(line));
+        for (const std::string& line : ProgramFixture::lines_of(text)) plans.push_back(json::parse(line));
         return plans;
     }
 };
@@ -172,45 +168,6 @@ TEST_F(FollowCommand, ALapGivesTheCourseAndTheStop) {
     // Another detector, and more laps than the frames have.
     ASSERT_EQ(follow("--follow run.frames.jsonl --method clc --laps 2 --out e.jsonl").exit_code, 0);
     EXPECT_NE(plans_in(text_of(path("e.jsonl"))).back().at("state"), "finished");
-}
-
-TEST_F(FollowCommand, NamesErrorsAndWritesNothing) {
-    file_with(lines_of(frames(3.0)), "run.frames.jsonl");
-    const std::string run = "--follow run.frames.jsonl ";
-    expect_refused(run, {"--out"});
-    expect_refused(run + "--out p.jsonl --mission rally", {"--mission", "rally"});
-    expect_refused(run + "--out p.jsonl --mission skidpad --laps 2", {"--laps"});
-    expect_refused(run + "--out p.jsonl --laps 0", {"--laps"});
-    expect_refused(run + "--out p.jsonl --method magic", {"--method", "magic"});
-    expect_refused(run + "--out p.jsonl --method clc --weights run.frames.jsonl", {"run.frames.jsonl"});
-    expect_refused(run + "--out p.jsonl --interval 0", {"--interval"});
-    expect_refused(run + "--out p.jsonl --lanes run.frames.jsonl", {"--follow", "--lanes"});
-    expect_refused(run + "--out run.frames.jsonl", {"--out"});
-    expect_refused(run + "--format tum --out -", {"--out"});
-    expect_refused(run + "--format tum --out c.csv", {"run.frames.jsonl", "lap"});
-    expect_refused(run + "--format tum --mission skidpad --out c.csv", {"--format", "skidpad"});
-    expect_refused("--follow none.jsonl --out p.jsonl", {"none.jsonl"});
-    expect_refused("--out p.jsonl --mission skidpad", {"--mission", "--follow"});
-    expect_refused("--out p.jsonl --time-limit 5", {"--time-limit", "--follow"});
-    const auto with_line = [&](const std::string& line) {
-        file_with(lines_of(frames(1.0)) + line + "\n", "bad.frames.jsonl");
-        return std::string("--follow bad.frames.jsonl --out p.jsonl");
-    };
-    expect_refused(with_line(R"({"pose": {"x": 0, "y": 0, "yaw": 0}})"), {"bad.frames.jsonl:3: cones"});
-    expect_refused(with_line(R"({"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"x": 1}]})"),
-                   {"bad.frames.jsonl:3: cones[0].y"});
-    expect_refused(with_line(R"({"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [], "time_s": "now"})"),
-                   {"bad.frames.jsonl:3: time_s"});
-    expect_refused(
-        with_line(
-            R"({"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1, "y": 1}, {"id": 1, "x": 2, "y": 1}]})"),
-        {"bad.frames.jsonl:3: cones[1].id", "twice"});
-    expect_refused(with_line("[]"), {"bad.frames.jsonl:3"});
-    file_with("[]", "empty.json");
-    expect_refused("--follow empty.json --out p.jsonl", {"empty.json", "no frame"});
-    file_with(R"([{"car_position": [0, 0], "car_direction": [0, 0], "slam_cones": [[],[],[],[],[]]}])",
-              "still.json");
-    expect_refused("--follow still.json --out p.jsonl", {"still.json", "[0].car_direction"});
 }
 
 TEST_F(FollowCommand, WhereEveryFrameIsRefusedNothingIsAnswered) {

@@ -41,7 +41,7 @@ class LongRun : public ProgramFixture {
     }
 
     /// Waits until the condition holds or the program ends. Returns whether it holds.
-    static bool wait_until(pid_t started, const std::function<bool()>& holds) {
+    static bool wait_until_ends_or(pid_t started, const std::function<bool()>& holds) {
         for (int wait = 0; wait < 60'000; ++wait) {
             if (holds()) return true;
             siginfo_t state{};
@@ -54,34 +54,12 @@ class LongRun : public ProgramFixture {
         return false;
     }
 
-    /// Every file of a folder by its name.
-    [[nodiscard]] std::map<std::string, std::string> contents(const std::string& folder) const {
-        std::map<std::string, std::string> files;
-        for (const auto& entry : fs::recursive_directory_iterator(path(folder))) {
-            if (entry.is_regular_file()) files[entry.path().filename().string()] = text_of(entry.path());
-        }
-        return files;
-    }
-
     /// Answers without their times, and the status of each.
     [[nodiscard]] std::vector<std::pair<Lane, LaneStatus>> answers(const std::string& file) const {
         std::vector<std::pair<Lane, LaneStatus>> all;
         for (const LaneRecord& record : read_lanes(path(file)))
             all.emplace_back(record.answer.lane, record.answer.status);
         return all;
-    }
-
-    /// The rows of results.jsonl without everything that depends on the clock.
-    [[nodiscard]] std::vector<nlohmann::json> results(const std::string& folder) const {
-        std::vector<nlohmann::json> rows;
-        std::ifstream lines(path(folder) / "results.jsonl");
-        for (std::string line; std::getline(lines, line);) {
-            rows.push_back(nlohmann::json::parse(line));
-            for (const char* key :
-                 {"latency_ms", "within_budget_share", "solved_share", "self_timed_ms", "echo_floor_ms"})
-                rows.back().erase(key);
-        }
-        return rows;
     }
 
     /// No file under a temporary name.
@@ -134,7 +112,7 @@ TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
         const std::string before = whole_laps(text_of(part), text_of(path("whole") / lanes));
         const pid_t started = start(compare(detector, "killed", kEvery_m));
         // Some milliseconds after the answers of another lap: in the middle of the next one.
-        wait_until(started, [&] {
+        wait_until_ends_or(started, [&] {
             return whole_laps(text_of(part), text_of(path("whole") / lanes)).size() > before.size() ||
                    fs::exists(path("killed") / lanes);
         });
@@ -151,7 +129,7 @@ TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
     std::ofstream(path("killed/scores.jsonl.tmp4711_0")) << "half of a";
     run_well(compare(detector, "killed", kEvery_m));
     EXPECT_EQ(answers("killed/" + lanes), answers("whole/" + lanes));
-    EXPECT_EQ(results("killed"), results("whole"));
+    EXPECT_EQ(results_in("killed"), results_in("whole"));
     EXPECT_EQ(text_of(path("killed/scenes.scenes.jsonl")), text_of(path("whole/scenes.scenes.jsonl")));
     EXPECT_FALSE(fs::exists(part));
     expect_no_temporary_file();
@@ -201,7 +179,7 @@ TEST_F(LongRun, KilledAtAnyMomentItLeavesNothingThatStopsTheNextOne) {
     }
     run_well(compare("clc", "killed"));
     EXPECT_EQ(answers("killed/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
-    EXPECT_EQ(results("killed"), results("whole"));
+    EXPECT_EQ(results_in("killed"), results_in("whole"));
 }
 
 TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
@@ -213,7 +191,7 @@ TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
     for (int attempt = 0; attempt < 20 && state.si_code != CLD_STOPPED; ++attempt) {
         if (attempt > 0) (void)wait_for(first);
         first = start(compare("rld-cbc", "shared") + " --overwrite");
-        wait_until(first, [&] { return fs::exists(part); });
+        wait_until_ends_or(first, [&] { return fs::exists(part); });
         ::kill(-first, SIGSTOP);
         const auto process = static_cast<id_t>(first);
         ASSERT_EQ(::waitid(P_PID, process, &state, WSTOPPED | WEXITED | WNOWAIT), 0);
@@ -225,7 +203,7 @@ TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
     ::kill(-first, SIGCONT);
     EXPECT_EQ(wait_for(first), 0) << text_of(path("stderr"));
     EXPECT_EQ(answers("shared/rld-cbc.n014.lanes.jsonl"), answers("whole/rld-cbc.n014.lanes.jsonl"));
-    EXPECT_EQ(results("shared"), results("whole"));
+    EXPECT_EQ(results_in("shared"), results_in("whole"));
 }
 
 // The disk is full after the scenes, after half of the answers, or in the scores. The files that fit stay,
@@ -251,7 +229,7 @@ TEST_F(LongRun, AFullDiskIsNamedAndNothingIsLost) {
         disk.grow("64m");
         run_well(compare("clc", "disk/results"));
         EXPECT_EQ(answers("disk/results/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
-        EXPECT_EQ(results("disk/results"), results("whole"));
+        EXPECT_EQ(results_in("disk/results"), results_in("whole"));
         // Complete laps of the earlier run are kept with their times.
         for (const char* lanes : {"clc.n014.lanes.jsonl", "clc.n014.lanes.jsonl.part"}) {
             const auto before = kept.find(lanes);

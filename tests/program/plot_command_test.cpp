@@ -123,21 +123,5 @@ TEST_F(PlotCommand, WritesPngByItsEnding) {
     EXPECT_TRUE(text_of(path("p.png")).starts_with("\x89PNG\r\n"));
 }
 
-TEST_F(PlotCommand, RefusesWhatItCannotDraw) {
-    make_scene();
-    const std::string with = "plot --scenes s.scenes.jsonl --lanes front.lanes.jsonl ";
-    expect_refused(with + "--id b --out p.svg", {"s.scenes.jsonl", "--id", "'b'"});
-    expect_refused(with + "--id a --out p.gif", {"--out", ".svg or .png"});
-    expect_refused(with + "--id a --method rld --out p.svg", {"--method", "'rld'", "'a'"});
-    expect_refused(with + "--id a --out nowhere/p.svg", {"nowhere"});
-    expect_refused(with + "--id a --python ./none --out p.svg", {"matplotlib", "./none"});
-    file_with(lane("front", "1, 7", "4, 5", ""), "wrong.lanes.jsonl");
-    expect_refused("plot --scenes s.scenes.jsonl --lanes wrong.lanes.jsonl --id a --out p.svg",
-                   {"wrong.lanes.jsonl:1", "left[1]", "cone 7"});
-    file_with("", "empty.lanes.jsonl");
-    expect_refused("plot --scenes s.scenes.jsonl --lanes empty.lanes.jsonl --id a --out p.svg",
-                   {"empty.lanes.jsonl", "'a'"});
-}
-
 }  // namespace
 }  // namespace conelane::experiments

@@ -12,19 +12,6 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The rows of results.jsonl without everything that depends on the clock, and without the record of the run,
-/// because that of a merged run names no shard.
-std::vector<nlohmann::json> results_in(const std::filesystem::path& directory) {
-    std::vector<nlohmann::json> rows;
-    std::ifstream lines(directory / "results.jsonl");
-    for (std::string line; std::getline(lines, line);) {
-        rows.push_back(nlohmann::json::parse(line));
-        for (const char* key : {"latency_ms", "within_budget_share", "solved_share", "run"})
-            rows.back().erase(key);
-    }
-    return rows;
-}
-
 constexpr const char* kTwoTracks =
     "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 --time-limit 60000 ";
 
@@ -33,10 +20,9 @@ TEST_F(Program, CompareWritesATableAndItsData) {
     EXPECT_THAT(outcome.output, HasSubstr("rld-cbc n=12"));
     EXPECT_THAT(text_of(path("results") / "table.txt"), HasSubstr("CLC paper"));
     // The output on a terminal: the same methods, within its columns and lines, and where the rest is.
-    std::istringstream lines(outcome.output);
-    std::size_t count = 0;
-    for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 100U) << line;
-    EXPECT_LE(count, 30U) << outcome.output;
+    const std::vector<std::string> lines = lines_of(outcome.output);
+    for (const std::string& line : lines) EXPECT_LE(line.size(), 100U) << line;
+    EXPECT_LE(lines.size(), 30U) << outcome.output;
     for (const char* words : {"paper", "car", "median", "p99", "wide table: results/table.txt",
                               "results/report.html", "Not usable, in % of the scenes, and why"})
         EXPECT_THAT(outcome.output, HasSubstr(words));
@@ -44,19 +30,13 @@ TEST_F(Program, CompareWritesATableAndItsData) {
                              "clc.lanes.jsonl", "results.jsonl", "table.txt"}) {
         EXPECT_TRUE(std::filesystem::exists(path("results") / file)) << file;
     }
-    // Scoring the stored lanes again gives the same table.
-    const Outcome again =
-        run("score --wide --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
-            "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/front.lanes.jsonl "
-            "results/clc.lanes.jsonl "
-            "results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl results/astar-lane.lanes.jsonl");
-    EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
-    // Without --wide it gives the same summary.
-    const Outcome summary =
-        run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
-            "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/front.lanes.jsonl "
-            "results/clc.lanes.jsonl results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl "
-            "results/astar-lane.lanes.jsonl");
+    // Scoring the stored lanes again gives the same table, and without --wide the same summary.
+    std::string score = "score --scenes results/scenes.scenes.jsonl --lanes";
+    for (const char* method : {"rld-cbc", "rld-pair", "rld-shape", "front", "clc", "clc-paper",
+                               "delaunay-beam", "astar-lane"})
+        score += std::string(" results/") + method + ".lanes.jsonl";
+    EXPECT_EQ(run(score + " --wide").output, text_of(path("results") / "table.txt"));
+    const Outcome summary = run(score);
     EXPECT_EQ(summary.output.substr(0, summary.output.find("all measures: conelane score --wide\n")),
               outcome.output.substr(0, outcome.output.find("wide table: ")));
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
@@ -87,7 +67,7 @@ TEST_F(Program, SteadinessIsKnownIfPosesHaveACommonStretch) {
         const std::string folder = std::string("every_") + every;
         run_well("compare --tracks generated:straight --methods clc --fp 0 --every " + std::string(every) +
                  " --out " + folder);
-        const std::vector<nlohmann::json> rows = results_in(path(folder));
+        const std::vector<nlohmann::json> rows = results_in(folder);
         ASSERT_FALSE(rows.empty());
         for (const nlohmann::json& row : rows) EXPECT_EQ(row.contains("unsteady_share"), is_known) << row;
     }
@@ -102,7 +82,7 @@ TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
                       std::string(detector) != "clc" && record.answer.status == LaneStatus::found);
         }
     }
-    for (const nlohmann::json& row : results_in(path("results"))) EXPECT_EQ(row.at("errors"), 0);
+    for (const nlohmann::json& row : results_in("results")) EXPECT_EQ(row.at("errors"), 0);
 }
 
 TEST_F(Program, AStoppedComparisonResumes) {
@@ -117,8 +97,8 @@ TEST_F(Program, AStoppedComparisonResumes) {
     run_well(std::string(kTwoTracks) + "--out stopped");
     EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
     EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
-    EXPECT_EQ(results_in(path("stopped")), results_in(path("whole")));
-    EXPECT_EQ(results_in(path("stopped")).size(), 8U * 2U * 2U);  // detectors, conditions, rates
+    EXPECT_EQ(results_in("stopped"), results_in("whole"));
+    EXPECT_EQ(results_in("stopped").size(), 8U * 2U * 2U);  // detectors, conditions, rates
 }
 
 TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedWithoutOverwrite) {
@@ -164,13 +144,12 @@ TEST_F(Program, MergedShardsEqualOneRun) {
     for (const char* detector : {"clc.lanes.jsonl", "rld-cbc.lanes.jsonl"}) {
         EXPECT_EQ(lanes_in(path("merged") / detector), lanes_in(path("whole") / detector));
     }
-    EXPECT_EQ(results_in(path("merged")), results_in(path("whole")));
+    EXPECT_EQ(results_in("merged"), results_in("whole"));
     expect_refused("merge part0 part1 --out again", {"2/3 is missing"});
     expect_refused("merge part0 part1 part1 part2 --out again", {"1/3 is there twice"});
     expect_refused("merge part0 whole part2 --out again", {"whole", "shard"});
     run_well("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other");
     expect_refused("merge part0 other part2 --out again", {"other", "tracks"});
-    expect_refused("compare --shard 3/3 --out again", {"--shard"});
     const std::string part = text_of(path("part1") / "run.json");
     expect_refused("merge part0 part1 part2 --overwrite --out part1", {"part1", "one of the shards"});
     EXPECT_EQ(text_of(path("part1") / "run.json"), part);

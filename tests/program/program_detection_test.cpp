@@ -6,9 +6,6 @@
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"
 
-#include <chrono>
-#include <thread>
-
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -38,31 +35,6 @@ TEST_F(Program, LanesDoNotDependOnThreads) {
     };
     EXPECT_EQ(lanes("clc", "1"), lanes("clc", "3"));
     EXPECT_EQ(lanes("rld-cbc", "1"), lanes("rld-cbc", "3"));
-}
-
-/// An option that a detector does not use is refused before the work, and nothing is written.
-TEST_F(Program, OptionsThatADetectorDoesNotUseAreRefused) {
-    make_scenes("--fp 0");
-    const auto refuse = [&](const std::string& detector, const std::string& options, const std::string& why) {
-        const std::string out = " --scenes s.scenes.jsonl --out l.lanes.jsonl";
-        expect_refused("detect --method " + detector + " " + options + out,
-                       {options.substr(0, options.find(' ')), why});
-        EXPECT_FALSE(std::filesystem::exists(path("l.lanes.jsonl")));
-    };
-    refuse("front", "--params shape", "'front' has no RLD parameters");
-    refuse("clc", "--pairing paper", "'clc' has no RLD parameters");
-    refuse("exec:mine=cat", "--params shape", "the program 'mine' has no RLD parameters");
-    refuse("front", "--nearest 0", "0");
-    refuse("clc", "--weights s.scenes.jsonl", "'clc' does not take them");
-    refuse("exec:mine=cat", "--weights s.scenes.jsonl", "the program 'mine' does not take them");
-    expect_refused("compare --tracks generated:circle --methods front,clc --params shape --out results",
-                   {"--params", "these methods have no RLD parameters"});
-    EXPECT_FALSE(std::filesystem::exists(path("results")));
-    EXPECT_EQ(run("compare --tracks generated:circle --methods clc,rld-pair --fp 0 --range 30 --every 60 "
-                  "--condition paper --params shape --shard 0/2 --out results")
-                  .exit_code,
-              0)
-        << "one of the methods has RLD parameters";
 }
 
 TEST_F(Program, DetectsWithOwnWeights) {
@@ -145,13 +117,9 @@ TEST_F(Program, AStreamIsAnsweredLineByLine) {
     EXPECT_THAT(wrong["message"].get<std::string>(), HasSubstr("id"));
     scenes.close();
     EXPECT_FALSE(std::getline(lanes, lane)) << "it ends with its input";
-    for (int wait = 0; wait < 200 && text_of(path("code")).empty(); ++wait) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    EXPECT_EQ(text_of(path("code")), "0\n");
+    EXPECT_TRUE(wait_until([&] { return text_of(path("code")) == "0\n"; }));
     const Outcome whole = run("detect --method clc --scenes s.scenes.jsonl --out -");
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(whole.output, '\n')), expected.size());
-    expect_refused("detect --method clc --scenes - --out - --threads 2", {"--threads", "stream"});
 }
 
 /// The ground truth as a detector's lanes has the best possible scores.
@@ -167,20 +135,18 @@ TEST_F(Program, GroundTruthAsLanesScoresFull) {
     }
     write_lanes(path("truth.lanes.jsonl"), records);
     run_well("score --scenes s.scenes.jsonl --lanes truth.lanes.jsonl --json truth.json");
-    std::ifstream lines(path("truth.json"));
-    std::size_t rows = 0;
-    for (std::string line; std::getline(lines, line); ++rows) {
-        const auto row = nlohmann::json::parse(line);
+    const std::vector<nlohmann::json> rows = json_lines("truth.json");
+    for (const nlohmann::json& row : rows) {
         EXPECT_EQ(row.at("mean_iou"), 1.0);
         EXPECT_EQ(row.at("success_share"), 1.0);
         EXPECT_EQ(row.at("usable_share"), 1.0);
         EXPECT_LT(row.at("lateral_p95_m").get<double>(), 1e-6);
         EXPECT_LT(row.at("heading_p95_rad").get<double>(), 1e-6);
-        EXPECT_EQ(row.at("share").at("ground_truth"), 1.0) << line;
+        EXPECT_EQ(row.at("share").at("ground_truth"), 1.0) << row;
         for (const char* key : {"commit", "compiler", "machine", "run"})
             EXPECT_TRUE(row.contains(key)) << key;
     }
-    EXPECT_EQ(rows, 6U);
+    EXPECT_EQ(rows.size(), 6U);
 }
 
 /// A proof that there is no lane counts like a proven optimum, if it is in time and the detector optimises.
@@ -206,13 +172,11 @@ TEST_F(Program, AProofThatThereIsNoLaneCountsAsSolved) {
     }
     write_lanes(path("l.lanes.jsonl"), records);
     run_well("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json rows");
-    std::ifstream lines(path("rows"));
-    std::string line;
-    ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_DOUBLE_EQ(nlohmann::json::parse(line).value("solved_share", 0.0),
+    const std::vector<nlohmann::json> rows = json_lines("rows");
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_DOUBLE_EQ(rows[0].value("solved_share", 0.0),
                      static_cast<double>(answers - 2) / static_cast<double>(answers));
-    ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_FALSE(nlohmann::json::parse(line).contains("solved_share")) << line;
+    EXPECT_FALSE(rows[1].contains("solved_share")) << rows[1];
 }
 
 }  // namespace

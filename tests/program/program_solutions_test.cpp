@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
     make_scenes("--fp 0.2");
-    ASSERT_EQ(run("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl").exit_code, 0);
+    run_well("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl");
     const Outcome good = run("check --scenes s.scenes.jsonl --solutions s.solutions.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
@@ -103,7 +103,7 @@ TEST_F(Claims, AProvenInfeasiblePasses) {
 
 TEST_F(Claims, WhatNothingProvesIsUnverified) {
     file_with(scene("a", 30).dump() + "\n", "c.scenes.jsonl");
-    ASSERT_EQ(run("solve --scenes c.scenes.jsonl --out best.solutions.jsonl").exit_code, 0);
+    run_well("solve --scenes c.scenes.jsonl --out best.solutions.jsonl");
     const std::string optimum = text_of(path("best.solutions.jsonl"));
     for (const std::string& claim : {infeasible("a", "cbc"), optimum}) {
         const Outcome outcome = check(claim, "--time-limit 1e-6");
@@ -121,7 +121,7 @@ TEST_F(Claims, WhatNothingProvesIsUnverified) {
 /// refutes it.
 TEST_F(Claims, AMadeUpOptimumIsWrong) {
     file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
-    ASSERT_EQ(run("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl").exit_code, 0);
+    run_well("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl");
     nlohmann::json some = nlohmann::json::parse(text_of(path("some.solutions.jsonl")));
     some.erase("nearest");
     for (const char* const claimant : {"cbc", "path-pair", "stranger"}) {
@@ -137,7 +137,7 @@ TEST_F(Claims, AMissingAnswerFails) {
     std::string scenes;
     for (int i = 0; i < 22; ++i) scenes += scene("s" + std::to_string(i), 5).dump() + "\n";
     file_with(scenes, "c.scenes.jsonl");
-    ASSERT_EQ(run("solve --scenes c.scenes.jsonl --out all.solutions.jsonl").exit_code, 0);
+    run_well("solve --scenes c.scenes.jsonl --out all.solutions.jsonl");
     const std::string all = text_of(path("all.solutions.jsonl"));
     EXPECT_EQ(check(all).exit_code, 0);
     const Outcome one = check(all.substr(0, all.find('\n') + 1));
@@ -152,8 +152,8 @@ TEST_F(Claims, AMissingAnswerFails) {
 /// A claimed optimum is refuted by a better lane graph in the file.
 TEST_F(Claims, ABetterLaneGraphRefutesAnOptimum) {
     file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
-    ASSERT_EQ(run("solve --scenes c.scenes.jsonl --out best.solutions.jsonl").exit_code, 0);
-    ASSERT_EQ(run("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl").exit_code, 0);
+    run_well("solve --scenes c.scenes.jsonl --out best.solutions.jsonl");
+    run_well("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl");
     nlohmann::json some = nlohmann::json::parse(text_of(path("some.solutions.jsonl")));
     EXPECT_EQ(some["nearest"], 8);
     EXPECT_EQ(check(some.dump() + "\n").exit_code, 0) << "the optimum of its cone set";
@@ -167,9 +167,7 @@ TEST_F(Claims, ABetterLaneGraphRefutesAnOptimum) {
 
 TEST_F(Claims, StoppedSolutionsSayWhyAndClaimNothing) {
     file_with(scene("lane", 8).dump() + "\n", "c.scenes.jsonl");
-    ASSERT_EQ(
-        run("solve --solver cbc --time-limit 1e-6 --scenes c.scenes.jsonl --out c.solutions.jsonl").exit_code,
-        0);
+    run_well("solve --solver cbc --time-limit 1e-6 --scenes c.scenes.jsonl --out c.solutions.jsonl");
     const std::string solutions = text_of(path("c.solutions.jsonl"));
     const nlohmann::json record = nlohmann::json::parse(solutions);
     EXPECT_EQ(record["status"], "stopped");
@@ -184,7 +182,7 @@ TEST_F(Claims, StoppedSolutionsSayWhyAndClaimNothing) {
 TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
     make_scenes("--fp 0.5");
     const std::string on = "--nearest 12 --params shape --scenes s.scenes.jsonl ";
-    ASSERT_EQ(run("solve --solver path-pair " + on + "--out n.solutions.jsonl").exit_code, 0);
+    run_well("solve --solver path-pair " + on + "--out n.solutions.jsonl");
     const Outcome good = run("check " + on + "--solutions n.solutions.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
@@ -198,11 +196,9 @@ TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
 TEST_F(Program, ClaimsWithOtherParametersAreNamed) {
     make_scenes("--fp 0.2");
     const std::string on = " --nearest 12 --params shape --scenes s.scenes.jsonl ";
-    ASSERT_EQ(run("solve --solver path-pair" + on + "--out c.jsonl").exit_code, 0);
+    run_well("solve --solver path-pair" + on + "--out c.jsonl");
     std::string old;
-    std::istringstream lines(text_of(path("c.jsonl")));
-    for (std::string line; std::getline(lines, line);) {
-        nlohmann::json record = nlohmann::json::parse(line);
+    for (nlohmann::json record : json_lines("c.jsonl")) {
         EXPECT_EQ(record.at("parameters"), "shape");
         EXPECT_EQ(record.at("pairing"), "near_far");
         EXPECT_EQ(record.at("parameters_hash").get<std::string>().size(), 16U);
@@ -210,8 +206,8 @@ TEST_F(Program, ClaimsWithOtherParametersAreNamed) {
         old += record.dump() + "\n";
     }
     file_with(old, "old.jsonl");
-    ASSERT_EQ(run("certify" + on + "--out root.jsonl").exit_code, 0);
-    ASSERT_EQ(run("certify --whole" + on + "--out whole.jsonl").exit_code, 0);
+    run_well("certify" + on + "--out root.jsonl");
+    run_well("certify --whole" + on + "--out whole.jsonl");
     for (const auto& [file, verify] : {std::pair<std::string, std::string>{"c.jsonl", "check --solutions "},
                                        {"root.jsonl", "certify --verify "},
                                        {"whole.jsonl", "certify --verify "}}) {
@@ -230,15 +226,13 @@ TEST_F(Program, ClaimsWithOtherParametersAreNamed) {
 TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     make_scenes("--fp 0.2");
     const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
-    ASSERT_EQ(run(on_scenes + "--out s.certificates.jsonl").exit_code, 0);
+    run_well(on_scenes + "--out s.certificates.jsonl");
     const Outcome good = run(on_scenes + "--verify s.certificates.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
 
     // A bound that is higher by 1, a multiplier below zero, a clique of edges that do not exclude each other.
-    std::string first_line = text_of(path("s.certificates.jsonl"));
-    first_line.resize(first_line.find('\n'));
-    const nlohmann::json certificate = nlohmann::json::parse(first_line);
+    const nlohmann::json certificate = json_lines("s.certificates.jsonl").front();
     std::vector<nlohmann::json> forgeries(4, certificate);
     forgeries[0]["bound"] = certificate["bound"].get<double>() + 1.0;
     forgeries[1]["heading_price"] = -0.1;
@@ -262,18 +256,16 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
 /// A start from outside changes no optimum: lanes of another method, with cones that are not there, and none.
 TEST_F(Program, SolvesFromLanesOfAnotherMethod) {
     make_scenes("--fp 0.3");
-    ASSERT_EQ(run("detect --method front --scenes s.scenes.jsonl --out front.lanes.jsonl").exit_code, 0);
+    run_well("detect --method front --scenes s.scenes.jsonl --out front.lanes.jsonl");
     const std::string solve = "solve --solver path-pair --time-limit inf --scenes s.scenes.jsonl --out ";
-    ASSERT_EQ(run(solve + "cold.jsonl").exit_code, 0);
+    run_well(solve + "cold.jsonl");
     const Outcome started = run(solve + "started.jsonl --start front.lanes.jsonl");
     ASSERT_EQ(started.exit_code, 0) << started.errors;
     EXPECT_THAT(started.output, HasSubstr(" started from a lane of front.lanes.jsonl\n"));
     EXPECT_THAT(started.output, testing::Not(HasSubstr("\n0 started")));
     const auto objectives = [&](const std::string& file) {
         std::vector<std::string> all;
-        std::istringstream lines(text_of(path(file)));
-        for (std::string line; std::getline(lines, line);) {
-            const nlohmann::json record = nlohmann::json::parse(line);
+        for (const nlohmann::json& record : json_lines(file)) {
             EXPECT_EQ(record.at("status"), "optimal");
             all.push_back(std::to_string(record.at("objective").get<double>()));
         }
@@ -305,13 +297,11 @@ TEST_F(Program, SolvesFromLanesOfAnotherMethod) {
 TEST_F(Program, CertificatesCoverLearnedCosts) {
     make_scenes("--fp 0.5");
     const std::string on_scenes = "certify --params learned --scenes s.scenes.jsonl ";
-    ASSERT_EQ(run(on_scenes + "--out learned.certificates.jsonl").exit_code, 0);
+    run_well(on_scenes + "--out learned.certificates.jsonl");
     const Outcome good = run(on_scenes + "--verify learned.certificates.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
-    std::string first_line = text_of(path("learned.certificates.jsonl"));
-    first_line.resize(first_line.find('\n'));
-    nlohmann::json forgery = nlohmann::json::parse(first_line);
+    nlohmann::json forgery = json_lines("learned.certificates.jsonl").front();
     forgery["bound"] = forgery["bound"].get<double>() + 1e-3;
     file_with(forgery.dump() + "\n", "forged.certificates.jsonl");
     const Outcome bad = run(on_scenes + "--verify forged.certificates.jsonl");
@@ -322,15 +312,13 @@ TEST_F(Program, CertificatesCoverLearnedCosts) {
 TEST_F(Program, CertificatesCoverShapeCosts) {
     make_scenes("--fp 0.5");
     const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
-    ASSERT_EQ(run(on_scenes + "--params shape --out shape.certificates.jsonl").exit_code, 0);
+    run_well(on_scenes + "--params shape --out shape.certificates.jsonl");
     const Outcome good = run(on_scenes + "--params shape --verify shape.certificates.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
     // They are about these costs and this cone set, even if they do not say so.
     std::string unnamed;
-    std::istringstream lines(text_of(path("shape.certificates.jsonl")));
-    for (std::string line; std::getline(lines, line);) {
-        nlohmann::json record = nlohmann::json::parse(line);
+    for (nlohmann::json record : json_lines("shape.certificates.jsonl")) {
         for (const char* key : {"nearest", "parameters", "parameters_hash", "pairing"}) record.erase(key);
         unnamed += record.dump() + "\n";
     }
@@ -345,7 +333,7 @@ TEST_F(Program, CertificatesCoverShapeCosts) {
 /// from the others.
 TEST_F(Program, CertifiesWholeSearches) {
     make_scenes("--fp 0.2");
-    ASSERT_EQ(run("certify --whole --nearest 16 --scenes s.scenes.jsonl --out c.jsonl").exit_code, 0);
+    run_well("certify --whole --nearest 16 --scenes s.scenes.jsonl --out c.jsonl");
     const std::string verify = "certify --nearest 16 --scenes s.scenes.jsonl --verify ";
     const Outcome good = run(verify + "c.jsonl");
     EXPECT_EQ(good.exit_code, 0);

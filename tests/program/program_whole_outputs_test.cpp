@@ -22,17 +22,6 @@ using testing::HasSubstr;
 
 class WholeOutputs : public Program {
   protected:
-    /// Every file of a folder by its name, except the lock.
-    [[nodiscard]] std::map<std::string, std::string> contents(const std::string& folder) const {
-        std::map<std::string, std::string> files;
-        if (!fs::exists(path(folder))) return files;
-        for (const auto& entry : fs::directory_iterator(path(folder))) {
-            const std::string name = entry.path().filename().string();
-            if (name != ".lock") files[name] = text_of(entry.path());
-        }
-        return files;
-    }
-
     /// Starts the program and sends the signal once the folder has a file whose name contains `part`.
     void interrupt(const std::string& arguments, int signal, const std::string& folder,
                    const std::string& part) {

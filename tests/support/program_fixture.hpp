@@ -4,6 +4,10 @@
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"
 
+#include <chrono>
+#include <thread>
+
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
 namespace conelane {
@@ -58,6 +62,47 @@ class ProgramFixture : public FileTest {
         int status = 0;
         EXPECT_EQ(::waitpid(started, &status, 0), started);
         return WIFSIGNALED(status) && WTERMSIG(status) == signal;
+    }
+
+    /// Waits for a minute at most. Whether the condition holds.
+    static bool wait_until(const std::function<bool()>& holds) {
+        for (int wait = 0; wait < 12'000 && !holds(); ++wait)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return holds();
+    }
+
+    [[nodiscard]] static std::vector<std::string> lines_of(const std::string& text) {
+        std::vector<std::string> lines;
+        std::istringstream stream(text);
+        for (std::string line; std::getline(stream, line);) lines.push_back(line);
+        return lines;
+    }
+    /// The JSON lines of a file.
+    [[nodiscard]] std::vector<nlohmann::json> json_lines(const std::filesystem::path& name) const {
+        std::vector<nlohmann::json> all;
+        for (const std::string& line : lines_of(text_of(path(name)))) all.push_back(nlohmann::json::parse(line));
+        return all;
+    }
+    /// The rows of results.jsonl without everything that depends on the clock, and without the record of the
+    /// run, because that of a merged run names no shard.
+    [[nodiscard]] std::vector<nlohmann::json> results_in(const std::string& folder) const {
+        std::vector<nlohmann::json> rows = json_lines(folder + "/results.jsonl");
+        for (nlohmann::json& row : rows) {
+            for (const char* key : {"latency_ms", "within_budget_share", "solved_share", "self_timed_ms",
+                                    "echo_floor_ms", "run"})
+                row.erase(key);
+        }
+        return rows;
+    }
+    /// Every file below a folder by its name, except the lock.
+    [[nodiscard]] std::map<std::string, std::string> contents(const std::string& folder) const {
+        std::map<std::string, std::string> files;
+        if (!std::filesystem::exists(path(folder))) return files;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path(folder))) {
+            const std::string name = entry.path().filename().string();
+            if (entry.is_regular_file() && name != ".lock") files[name] = text_of(entry.path());
+        }
+        return files;
     }
 
     /// Bad input: exit code 2, one line on stderr that holds every one of `names`, and no new file.

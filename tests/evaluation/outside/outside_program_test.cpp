@@ -30,8 +30,7 @@ namespace conelane {
 namespace {
 
 using experiments::RecordScorer;
-using experiments::ScoredRecord;
-using experiments::training_courses;
+using experiments::ScoredMethod;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -162,10 +161,10 @@ TEST(ForeignLanes, EveryAcceptedAnswerCanBeScored) {
             if (!tangle_of(record, scene).empty()) record.points.reset();
             records.push_back(std::move(record));
         }
-        const std::vector<ScoredRecord> scored =
-            RecordScorer(set.scenes, set.tracks, training_courses).score(records, "theirs.lanes.jsonl");
-        ASSERT_EQ(scored.size(), set.scenes.size());
-        for (const ScoreRow& row : summarise(scored)) EXPECT_GE(row.summary.usable_share.value(), 0.0);
+        const ScoredMethod scored =
+            RecordScorer(set.scenes, set.tracks).score({.name = "stranger"}, records, "theirs.lanes.jsonl");
+        ASSERT_EQ(scored.scores.size(), set.scenes.size());
+        for (const ScoreRow& row : scored.rows()) EXPECT_GE(row.summary.usable_share.value(), 0.0);
     }
 }
 

@@ -1,5 +1,6 @@
 #include "evaluation/scoring/score_table.hpp"
 
+#include "evaluation/files/json_node.hpp"
 #include "evaluation/scoring/published_figures.hpp"
 #include "tests/support/testing.hpp"
 
@@ -63,8 +64,8 @@ TEST(SummaryJson, HoldsWhatDetectorsSayOfTheirLanesWhereTheyDo) {
     scores[2].score.trusted_m = 10.0;
     scores[2].score.divergence_distance_m = 9.0;
     const std::vector<ScoreRow> rows = summarise_by_key(scores);
-    EXPECT_THAT(summary_json(rows[0]), Not(HasSubstr("calibration")));
-    const auto said = nlohmann::json::parse(summary_json(rows[1])).at("calibration");
+    EXPECT_THAT(summary_json(rows[0]).dump(), Not(HasSubstr("calibration")));
+    const auto said = summary_json(rows[1]).at("calibration");
     EXPECT_NEAR(said.at("error").get<double>(), 0.94 - 0.5, 1e-12);
     EXPECT_EQ(said.at("sure_share"), 0.0);
     EXPECT_FALSE(said.contains("usable_where_sure_share"));
@@ -113,7 +114,7 @@ TEST(ScoreTable, NamesTheConditionsWhereThereAreAny) {
     const auto lines = words_of_lines(score_table(rows));
     EXPECT_EQ(lines[0][1], "condition");
     EXPECT_EQ(lines[2][1], "car");
-    EXPECT_EQ(nlohmann::json::parse(summary_json(rows[1])).at("condition"), "car");
+    EXPECT_EQ(summary_json(rows[1]).at("condition"), "car");
 }
 
 TEST(ScoreTable, ShowsWhatIsUnknownAsUnknown) {
@@ -146,7 +147,7 @@ TEST(ScoreTable, TellsErrorsFromScenesWithoutALane) {
     const auto rows =
         summarise_by_key(std::vector<KeyedScore>{failed, keyed("clc", 0.5, 30, Category::none, 0.0)});
     EXPECT_EQ(rows.front().summary.errors, 1u);
-    EXPECT_EQ(nlohmann::json::parse(summary_json(rows.front())).at("errors"), 1);
+    EXPECT_EQ(summary_json(rows.front()).at("errors"), 1);
     const auto words = words_of_lines(score_table(rows))[1];
     EXPECT_EQ(words[13], "50.0") << "each scene stands in one column";
     EXPECT_EQ(words[14], "50.0");
@@ -155,7 +156,7 @@ TEST(ScoreTable, TellsErrorsFromScenesWithoutALane) {
 TEST(SummaryJson, IsOneLineWithoutUnknownMeasures) {
     const auto rows = summarise_by_key(
         std::vector<KeyedScore>{keyed("new\nline \xff", 0.5, 30, Category::ground_truth, 1)});
-    const std::string line = summary_json(rows.front());
+    const std::string line = to_line(summary_json(rows.front()));
     EXPECT_THAT(line, Not(HasSubstr("\n")));
     const auto json = nlohmann::json::parse(line);
     EXPECT_EQ(json.at("false_positive_rate"), 0.5);

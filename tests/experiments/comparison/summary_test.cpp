@@ -36,14 +36,22 @@ class Summaries : public testing::Test {
         score.lane_length_m = 25.0;
         score.ground_truth_length_m = 25.0;
         score.category = failure ? Category::none : Category::near_ground_truth;
-        scored_.push_back({&scene, &record, score, failure});
+        auto scored = std::ranges::find_if(methods_, [&](const ScoredMethod& known) {
+            return known.method.name == method && known.method.nearest == nearest;
+        });
+        if (scored == methods_.end()) {
+            scored = methods_.insert(scored, ScoredMethod{});
+            scored->method.name = method;
+            scored->method.nearest = nearest;
+        }
+        scored->scores.push_back({&scene, &record, score, failure});
     }
     void add_unknown(const std::string& method) {
         add(method, {}, {});
-        scored_.back().score.divergence_known = false;
+        methods_.back().scores.back().score.divergence_known = false;
     }
     [[nodiscard]] std::string text(const std::vector<std::string>& notes = {}) const {
-        return summary(scored_, notes);
+        return summary(methods_, notes);
     }
     [[nodiscard]] static std::vector<std::string> lines(const std::string& text) {
         std::vector<std::string> all;
@@ -59,7 +67,7 @@ class Summaries : public testing::Test {
 
     std::deque<AnnotatedScene> scenes_;
     std::deque<LaneRecord> records_;
-    std::vector<ScoredRecord> scored_;
+    std::vector<ScoredMethod> methods_;
 };
 
 TEST_F(Summaries, OfNothingAreEmpty) {
@@ -78,8 +86,9 @@ TEST_F(Summaries, SayUsableLanesByConditionAndRateLatencyAndWhatWentWrong) {
             }
         }
     }
-    scored_.front().failure = LaneFailure::nothing_found;  // of `paper`, without false positives
-    scored_.front().score.category = Category::none;
+    ScoredRecord& first = methods_.front().scores.front();  // of `paper`, without false positives
+    first.failure = LaneFailure::nothing_found;
+    first.score.category = Category::none;
     EXPECT_THAT(
         lines(text()),
         ElementsAre("Usable lanes in %, by share of false positives in %; 16 scenes a method; range 30 m",
@@ -127,7 +136,7 @@ TEST_F(Summaries, FitWhateverIsCompared) {
             for (const std::size_t rates : {1U, 4U, 30U}) {
                 for (const std::size_t ranges : {1U, 3U}) {
                     for (const std::size_t sizes : {1U, 12U}) {
-                        scored_.clear();
+                        methods_.clear();
                         scenes_.clear();
                         records_.clear();
                         for (std::size_t m = 0; m < methods; ++m) {
