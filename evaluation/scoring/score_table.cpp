@@ -1,6 +1,7 @@
 #include "evaluation/scoring/score_table.hpp"
 
 #include "evaluation/scoring/published_figures.hpp"
+#include "evaluation/scoring/text_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -176,25 +177,22 @@ std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
 }
 
 std::string score_table(std::span<const ScoreRow> rows) {
-    std::vector<Line> lines(1);
-    for (const std::string_view title : kTitles) lines[0][title] = title;
+    std::vector<Line> lines;
     std::ranges::transform(rows, std::back_inserter(lines), line_of);
-    const std::vector<Line> published = published_lines(rows);
-    lines.insert(lines.end(), published.begin(), published.end());
-
-    std::vector<std::string> texts(lines.size());
+    std::ranges::move(published_lines(rows), std::back_inserter(lines));
+    std::vector<TextTable::Column> columns;
     for (const std::string_view title : kTitles) {
-        if (title == "condition" &&
-            std::ranges::all_of(rows, [](const ScoreRow& row) { return row.key.condition.empty(); }))
-            continue;
-        std::vector<std::string> cells;
-        for (Line& line : lines) cells.push_back(line.emplace(title, "-").first->second);
-        const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            texts[i] += title == kTitles[0] ? fmt::format("{:<{}}", cells[i], width)
-                                            : fmt::format("  {:>{}}", cells[i], width);
-        }
+        if (title != "condition" || std::ranges::any_of(lines, [&](const Line& line) { return line.contains(title); }))
+            columns.push_back({std::string(title), columns.empty()});
     }
+    TextTable table(columns, 2);
+    for (Line& line : lines) {
+        std::vector<std::string> cells;
+        for (const TextTable::Column& column : columns)
+            cells.push_back(line.emplace(column.title, "-").first->second);
+        table.add(std::move(cells));
+    }
+    const std::vector<std::string> texts = table.lines();
     std::string notes;
     std::size_t unknown = 0;
     for (const ScoreRow& row : rows) unknown += row.summary.divergence_unknown;
@@ -206,8 +204,8 @@ std::string score_table(std::span<const ScoreRow> rows) {
         notes += "* with courses that the method has learned from: no held-out figure\n";
     notes += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
     const auto own = static_cast<std::ptrdiff_t>(rows.size()) + 1;
-    return fmt::format("{}\n{}{}\n", fmt::join(texts.begin(), texts.begin() + own, "\n"), notes,
-                       fmt::join(texts.begin() + own, texts.end(), "\n"));
+    return fmt::format("{}{}{}", fmt::join(texts.begin(), texts.begin() + own, ""), notes,
+                       fmt::join(texts.begin() + own, texts.end(), ""));
 }
 
 std::string ScoreKey::detector_label() const {

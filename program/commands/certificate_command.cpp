@@ -9,6 +9,7 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
@@ -19,7 +20,6 @@
 #include <optional>
 #include <string>
 #include <type_traits>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -129,9 +129,7 @@ std::vector<CertificateRecord> root_certificates(const CertificateOptions& optio
 template <typename Record, typename Verify>
 void for_each_record(const CertificateOptions& options, const RldParameters& parameters,
                      const std::vector<Record>& records, const Verify& verify) {
-    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    std::unordered_map<std::string, const Scene*> scene_of;
-    for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
+    const ScenesById scenes(options.scenes);
     if (records.empty()) throw InputError(options.verify, 0, "", "holds no certificate");
     const ClaimBasis checked{tag_of(options.parameters.name, parameters), options.nearest};
     for (const Record& record : records) {
@@ -139,12 +137,8 @@ void for_each_record(const CertificateOptions& options, const RldParameters& par
     }
     Progress progress("verify", records.size());
     for (const Record& record : records) {
-        const auto found = scene_of.find(record.scene);
-        if (found == scene_of.end()) {
-            throw InputError(options.verify, record.line, "scene",
-                             "'" + record.scene + "' is not in the scenes file");
-        }
-        verify(record, cone_set(*found->second, options.nearest ? options.nearest : record.nearest));
+        const Scene& scene = scenes.of(record.scene, options.verify, record.line).scene;
+        verify(record, cone_set(scene, options.nearest ? options.nearest : record.nearest));
         progress.advance();
     }
 }

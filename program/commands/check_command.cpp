@@ -4,9 +4,9 @@
 #include "evaluation/checking/exact_program.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/solution_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
@@ -94,16 +94,12 @@ class Check {
     explicit Check(const CheckOptions& options)
         : options_(options),
           parameters_(options.parameters.load()),
-          scenes_(read_scenes(options.scenes)),
+          scenes_(options.scenes),
           records_(read_solutions(options.solutions)) {
-        for (const AnnotatedScene& scene : scenes_) scene_of_.emplace(scene.scene.id, &scene);
         if (records_.empty()) throw InputError(options.solutions, 0, "", "holds no solution");
         const ClaimBasis checked{tag_of(options.parameters.name, parameters_), options.nearest};
         for (const SolutionRecord& record : records_) {
-            if (!scene_of_.contains(record.scene)) {
-                throw InputError(options.solutions, record.line, "scene",
-                                 "'" + record.scene + "' is not in the scenes file");
-            }
+            (void)scenes_.of(record.scene, options.solutions, record.line);
             require_same_basis({record.parameters, record.nearest}, checked, options.solutions, record.line);
         }
     }
@@ -151,7 +147,7 @@ class Check {
         const auto [place, is_new] = cone_sets_.try_emplace({record.scene, nearest});
         ConeSet& set = place->second;
         if (!is_new) return set;
-        const AnnotatedScene& annotated = *scene_of_.at(record.scene);
+        const AnnotatedScene& annotated = scenes_.of(record.scene, options_.solutions, record.line);
         set.scene = nearest ? nearest_ahead(annotated.scene, *nearest) : annotated.scene;
         if (!annotated.ground_truth) return set;
         Lane lane = *annotated.ground_truth;
@@ -285,7 +281,7 @@ class Check {
         }
         std::size_t missing = 0;
         for (const auto& [solver, scenes] : answered) {
-            for (const AnnotatedScene& annotated : scenes_) {
+            for (const AnnotatedScene& annotated : scenes_.all()) {
                 const std::string& scene = annotated.scene.id;
                 if (scenes.contains(scene)) continue;
                 fmt::print("{}: {} ({}) gives no answer\n", scene, solver.first, solver.second);
@@ -297,9 +293,8 @@ class Check {
 
     const CheckOptions& options_;
     const RldParameters parameters_;
-    const std::vector<AnnotatedScene> scenes_;
+    const ScenesById scenes_;
     const std::vector<SolutionRecord> records_;
-    std::unordered_map<std::string, const AnnotatedScene*> scene_of_;
     std::map<std::pair<std::string, std::optional<std::size_t>>, ConeSet> cone_sets_;
     ExactTotals exact_;
     std::size_t proven_ = 0;

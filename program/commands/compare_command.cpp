@@ -3,20 +3,16 @@
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/page.hpp"
-#include "program/commands/unanswered.hpp"
 
 #include <algorithm>
 #include <charconv>
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {
@@ -115,15 +111,6 @@ void choose_defaults(const CLI::App& command, CompareOptions& options) {
     if ((is_disturbed || options.is_by_size) && !is_given("--condition")) scenes.conditions.clear();
 }
 
-void merge_and_print(const CompareOptions& options) {
-    require_own_page(options.directory);
-    const ComparisonOutcome outcome = merge(options.shards, options.directory, options.comparison.overwrite);
-    fmt::print("{}", outcome.summary);
-    say_wide_table(options.directory);
-    write_page(options.directory);
-    report_errors(outcome.errors);
-}
-
 void compare_and_print(CompareOptions& options) {
     ComparisonOptions& comparison = options.comparison;
     if (comparison.tracks.empty()) {
@@ -136,11 +123,7 @@ void compare_and_print(CompareOptions& options) {
     comparison.scenes.threads = comparison.run.threads;
     const bool is_whole = comparison.shard.count == 1;  // merge makes the page of all shards
     if (is_whole) require_own_page(options.directory);
-    const ComparisonOutcome outcome = compare(comparison, options.directory);
-    fmt::print("{}", outcome.summary);
-    say_wide_table(options.directory);
-    if (is_whole) write_page(options.directory);
-    report_errors(outcome.errors);
+    finish_comparison(compare(comparison, options.directory), options.directory, is_whole);
 }
 
 }  // namespace
@@ -157,7 +140,9 @@ void add_compare_command(CLI::App& program) {
     command.callback([options, &command] {
         if (options->is_merge) {
             if (options->shards.empty()) throw CLI::RequiredError("shards");
-            return merge_and_print(*options);
+            require_own_page(options->directory);
+            return finish_comparison(merge(options->shards, options->directory, options->comparison.overwrite),
+                                     options->directory);
         }
         choose_defaults(command, *options);
         std::vector<std::optional<std::size_t>> sizes{options->nearest};

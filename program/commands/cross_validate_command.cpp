@@ -1,16 +1,12 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/course_families.hpp"
-#include "program/commands/page.hpp"
-#include "program/commands/unanswered.hpp"
 
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {
@@ -47,11 +43,7 @@ void run(CrossValidateOptions& options) {
     run.folds = options.folds;
     run.colors_from = options.colors_from;
     require_own_page(options.directory);
-    const ComparisonOutcome outcome = cross_validate(run, options.directory);
-    fmt::print("{}", outcome.summary);
-    say_wide_table(options.directory);
-    write_page(options.directory);
-    report_errors(outcome.errors);
+    finish_comparison(cross_validate(run, options.directory), options.directory);
 }
 
 }  // namespace

@@ -1,34 +1,23 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
-#include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/unanswered.hpp"
 #include "solvers/registry.hpp"
 
-#include <cerrno>
 #include <cstddef>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <ostream>
 #include <string>
-#include <system_error>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {
-
-/// Stands for standard input and standard output.
-constexpr const char* kStandardStream = "-";
 
 struct DetectOptions {
     std::string method;
@@ -38,30 +27,6 @@ struct DetectOptions {
     ParameterSource parameters;
     std::optional<std::size_t> nearest;
     RunOptions run;
-};
-
-/// Output of answers line by line: a file that appears when it is complete, or standard output at once.
-class LaneSink {
-  public:
-    explicit LaneSink(const std::string& out) {
-        if (out != kStandardStream) file_.emplace(out);
-    }
-    void put(const LaneRecord& record) {
-        std::ostream& stream = file_ ? file_->stream() : std::cout;
-        errno = 0;
-        stream << lane_line(record) << '\n' << std::flush;
-        if (!stream)
-            throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
-        add_answer_of(errors_, record);
-    }
-    void commit() {
-        if (file_) file_->commit();
-        report_errors(errors_);
-    }
-
-  private:
-    std::optional<AtomicFile> file_;
-    AnswerErrors errors_;
 };
 
 /// The method, and into the options what it takes of them.
@@ -77,11 +42,7 @@ Method method_of(DetectOptions& options) {
     if (options.weights.empty()) return method;
     if (!method.takes_weights())
         throw InvalidInput("--weights", who + " does not take them: only front and front-warm do");
-    // Read once and before the work, so that errors in them are reported at once.
-    options.run.detector.weights = parsed_file(options.weights, [](std::string text) {
-        (void)parse_front_weights(text);
-        return WeightsBytes{std::move(text)};
-    });
+    options.run.detector.weights = read_front_weights_bytes(options.weights);
     return method;
 }
 
@@ -89,28 +50,34 @@ Method method_of(DetectOptions& options) {
 void detect_streamed(const Method& method, const DetectOptions& options) {
     if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
     const std::unique_ptr<TimedDetector> timed = method.maker(options.run)("");
-    LaneSink sink(options.out);
+    LineOutput output(options.out);
+    AnswerErrors errors;
+    const auto put = [&](const LaneRecord& record) {
+        output.put(lane_line(record));
+        add_answer_of(errors, record);
+    };
     if (options.scenes == kStandardStream) {
         for_each_scene_line(std::cin, [&](const SceneLine& line) {
             if (line.reset) {
                 timed->reset();
             } else if (line.scene) {
-                sink.put(timed->answer(line.scene->scene));
+                put(timed->answer(line.scene->scene));
             } else {
                 LaneRecord wrong{std::to_string(line.number), method.name, {}, 0.0, {}};
                 wrong.answer.status = LaneStatus::error;
                 wrong.answer.message = line.fault;
-                sink.put(wrong);
+                put(wrong);
             }
         });
     } else {
         const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
         for (std::size_t i = 0; i < scenes.size(); ++i) {
             if (i > 0 && !same_lap(scenes[i - 1], scenes[i])) timed->reset();
-            sink.put(timed->answer(scenes[i].scene));
+            put(timed->answer(scenes[i].scene));
         }
     }
-    sink.commit();
+    output.commit();
+    report_errors(errors);
 }
 
 void detect(DetectOptions& options) {

@@ -4,17 +4,14 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "program/commands/follow_frames.hpp"
-#include "program/commands/unanswered.hpp"
 
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -89,18 +86,10 @@ void drive_all(const DriveOptions& options) {
     }
     if (options.out == "-") throw InvalidInput("--out", "is standard output with --follow only");
     const std::vector<LaneRecord> records = chosen_lanes(options);
-    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    std::unordered_map<std::string_view, const Scene*> scene_of;
-    for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
+    const ScenesById scenes(options.scenes);
     std::vector<DrivableRecord> lanes;
-    for (const LaneRecord& record : records) {
-        const auto found = scene_of.find(record.scene);
-        if (found == scene_of.end()) {
-            throw InputError(options.lanes, record.line, "scene",
-                             "'" + record.scene + "' is not in " + options.scenes);
-        }
-        lanes.push_back(drive(record, *found->second, options));
-    }
+    for (const LaneRecord& record : records)
+        lanes.push_back(drive(record, scenes.of(record.scene, options.lanes, record.line).scene, options));
     if (options.format == "json") {
         write_drivable_lanes(options.out, lanes);
         report_errors(errors_among(records));

@@ -6,9 +6,9 @@
 #include "evaluation/files/program_solution.hpp"
 #include "evaluation/files/solution_file.hpp"
 #include "evaluation/outside/connecting_flow.hpp"
-#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "model/lane_graph_model.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
@@ -56,13 +56,8 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
 }
 
 Scene load_scene(const ProgramSource& source) {
-    const std::vector<AnnotatedScene> scenes = read_scenes(source.scenes);
-    const auto found = std::ranges::find(scenes, source.id,
-                                         [](const AnnotatedScene& annotated) { return annotated.scene.id; });
-    if (found == scenes.end()) {
-        throw InvalidInput("--id", "there is no scene '" + source.id + "' in " + source.scenes);
-    }
-    return source.nearest ? nearest_ahead(found->scene, *source.nearest) : found->scene;
+    const AnnotatedScene found = scene_named(source.id, source.scenes);
+    return source.nearest ? nearest_ahead(found.scene, *source.nearest) : found.scene;
 }
 
 /// The program of a scene, with everything that it refers to.

@@ -2,29 +2,20 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
-#include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/drivable_lane_file.hpp"
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/files/plan_file.hpp"
 #include "evaluation/scenes/frame_file.hpp"
-#include "program/commands/unanswered.hpp"
+#include "program/commands/command_parts.hpp"
 
-#include <cerrno>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <ostream>
 #include <string>
-#include <system_error>
-#include <utility>
 
 namespace conelane::experiments {
 namespace {
-
-constexpr const char* kStandardStream = "-";
 
 /// The names of the planner's options on the command line.
 std::string option_of(const std::string& key) {
@@ -47,28 +38,19 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
         wanted.detector = options.detector;
         wanted.laps = options.laps;
         wanted.drivable = options.drivable;
-        if (!options.weights.empty()) {
-            wanted.detector_options.weights = parsed_file(options.weights, [](std::string text) {
-                (void)parse_front_weights(text);
-                return WeightsBytes{std::move(text)};
-            });
-        }
+        if (!options.weights.empty())
+            wanted.detector_options.weights = read_front_weights_bytes(options.weights);
         return make_planner(wanted);
     } catch (const InvalidInput& error) {
         throw InvalidInput(option_of(error.key()), reason_of(error));
     }
 }
 
-/// Output of plans line by line: a file that appears when it is complete, or standard output at once.
+/// The plans of a run, where they are written, not only the course.
 class PlanSink {
   public:
     explicit PlanSink(const FollowOptions& options) : detector_(options.detector) {
-        if (options.format != "json") return;  // only the course is written
-        if (options.out == kStandardStream) {
-            stream_ = &std::cout;
-        } else {
-            stream_ = &file_.emplace(options.out).stream();
-        }
+        if (options.format == "json") output_.emplace(options.out);
     }
     void put(const FrameLine& line, const Plan& plan) {
         write(plan_line(line.number, line.frame->time_s, plan));
@@ -83,22 +65,17 @@ class PlanSink {
         errors_.add_error(detector_, std::to_string(line.number), message);
     }
     void commit() {
-        if (file_) file_->commit();
+        if (output_) output_->commit();
     }
     void report() const { report_errors(errors_); }
 
   private:
     void write(const std::string& text) {
-        if (stream_ == nullptr) return;
-        errno = 0;
-        *stream_ << text << '\n' << std::flush;
-        if (!*stream_)
-            throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
+        if (output_) output_->put(text);
     }
 
     std::string detector_;
-    std::optional<AtomicFile> file_;
-    std::ostream* stream_ = nullptr;
+    std::optional<LineOutput> output_;
     AnswerErrors errors_;
 };
 

@@ -7,6 +7,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/report/package.hpp"
 #include "experiments/report/picture.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
@@ -32,13 +33,6 @@ struct PlotOptions {
     std::string title;
     std::string python;
 };
-
-AnnotatedScene scene_named(const PlotOptions& options) {
-    for (AnnotatedScene& scene : read_scenes(options.scenes)) {
-        if (scene.scene.id == options.id) return std::move(scene);
-    }
-    throw InputError(options.scenes, 0, "--id", "'" + options.id + "' is not a scene of it");
-}
 
 /// The boundaries of the scene's track, if a companion of the scenes file has them.
 TrackBoundariesByName track_of(const PlotOptions& options, const std::string& track) {
@@ -71,7 +65,7 @@ void add_lanes(const std::string& file, const PlotOptions& options, Picture& pic
 
 void plot(const PlotOptions& options) {
     Picture picture;
-    picture.scene = scene_named(options);
+    picture.scene = scene_named(options.id, options.scenes);
     picture.tracks = track_of(options, picture.scene.track);
     picture.with_given = options.with_given;
     picture.with_truth = !options.without_truth;

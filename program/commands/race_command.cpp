@@ -1,7 +1,5 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
@@ -11,8 +9,8 @@
 #include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/course_families.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -87,11 +85,7 @@ struct WeightedCourse {
 };
 
 std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
-    // Read once and before the work, so that errors in them are reported at once.
-    return std::make_shared<const WeightsBytes>(parsed_file(file, [](std::string text) {
-        (void)parse_front_weights(text);
-        return WeightsBytes{std::move(text)};
-    }));
+    return std::make_shared<const WeightsBytes>(read_front_weights_bytes(file));
 }
 
 void add_circuits(std::vector<WeightedCourse>& courses, const std::string& spec,

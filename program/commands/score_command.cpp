@@ -10,6 +10,7 @@
 #include "experiments/comparison/summary.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>

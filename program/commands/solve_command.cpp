@@ -8,8 +8,8 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/unanswered.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

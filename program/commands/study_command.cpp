@@ -1,8 +1,8 @@
 #include "evaluation/files/figure_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/studies/study.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/unanswered.hpp"
 
 #include <memory>
 #include <string>

@@ -1,0 +1,131 @@
+#include "program/commands/command_parts.hpp"
+
+#include "evaluation/files/file_text.hpp"
+#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/report/package.hpp"
+#include "experiments/report/report.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_page(const fs::path& directory) {
+    const fs::path page = directory / "report.html";
+    try {
+        write_report(directory, page);
+    } catch (const NoPython& missing) {
+        fmt::print("results: {}, without a page: {}\n", directory.string(), missing.what());
+        return;
+    } catch (const PackageRefused&) {
+        fmt::print("results: {}, without a page\n", directory.string());
+        constexpr int kFailed = 2;
+        throw CLI::RuntimeError(kFailed);  // it has printed the reason
+    } catch (const std::exception&) {
+        fmt::print("results: {}, without a page\n", directory.string());
+        throw;
+    }
+    fmt::print("results: {}, page: {}\n", directory.string(), page.string());
+}
+
+}  // namespace
+
+std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) {
+    std::vector<CourseFamily> families;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        const std::string name = text.substr(0, equals);
+        constexpr std::string_view kLetters =
+            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+        if (equals == std::string::npos || name.empty() ||
+            name.find_first_not_of(kLetters) != std::string::npos) {
+            throw CLI::ValidationError(
+                "--family", "'" + text + "' is not NAME=SPEC with a name of letters, digits, _ and -");
+        }
+        auto family = std::ranges::find(families, name, &CourseFamily::name);
+        if (family == families.end()) family = families.insert(families.end(), {name, {}});
+        family->tracks.push_back(text.substr(equals + 1));
+    }
+    return families;
+}
+
+WeightsBytes read_front_weights_bytes(const fs::path& file) {
+    return parsed_file(file, [](std::string text) {
+        (void)parse_front_weights(text);
+        return WeightsBytes{std::move(text)};
+    });
+}
+
+AnnotatedScene scene_named(const std::string& id, const fs::path& scenes_file) {
+    for (AnnotatedScene& scene : read_scenes(scenes_file)) {
+        if (scene.scene.id == id) return std::move(scene);
+    }
+    throw InputError(scenes_file, 0, "--id", "'" + id + "' is not a scene of it");
+}
+
+ScenesById::ScenesById(fs::path file) : file_(std::move(file)), scenes_(read_scenes(file_)) {
+    for (const AnnotatedScene& scene : scenes_) by_id_.emplace(scene.scene.id, &scene);
+}
+
+const AnnotatedScene& ScenesById::of(const std::string& id, const fs::path& file, std::size_t line) const {
+    const auto found = by_id_.find(id);
+    if (found != by_id_.end()) return *found->second;
+    throw InputError(file, line, "scene", "'" + id + "' is not in " + file_.string());
+}
+
+LineOutput::LineOutput(const std::string& out) {
+    if (out != kStandardStream) file_.emplace(out);
+}
+
+void LineOutput::put(const std::string& line) {
+    std::ostream& stream = file_ ? file_->stream() : std::cout;
+    errno = 0;
+    stream << line << '\n' << std::flush;
+    if (!stream) throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
+}
+
+void LineOutput::commit() {
+    if (file_) file_->commit();
+}
+
+void require_own_page(const fs::path& directory) {
+    // The mark that report/page.py writes near the beginning.
+    constexpr std::string_view kTitle = "<title>conelane: ";
+    constexpr std::size_t kBeginning = 2000;
+    const fs::path page = directory / "report.html";
+    std::error_code ignored;
+    if (!fs::is_regular_file(page, ignored) || fs::file_size(page, ignored) == 0) return;
+    std::string beginning(kBeginning, ' ');
+    std::ifstream(page, std::ios::binary).read(beginning.data(), kBeginning);
+    if (beginning.find(kTitle) != std::string::npos) return;
+    throw InputError(page, 0, "",
+                     "is not a page of conelane and would be replaced; move it, or name another directory");
+}
+
+void finish_comparison(const ComparisonOutcome& outcome, const fs::path& directory, bool with_page) {
+    fmt::print("{}wide table: {}\n", outcome.summary, (directory / "table.txt").string());
+    if (with_page) write_page(directory);
+    report_errors(outcome.errors);
+}
+
+void report_errors(const AnswerErrors& errors) {
+    constexpr int kNothingAnswered = 1;
+    for (const std::string& line : errors.lines()) fmt::print(stderr, "conelane: {}\n", line);
+    if (errors.any_answered_nothing()) throw CLI::RuntimeError(kNothingAnswered);
+}
+
+}  // namespace conelane::experiments

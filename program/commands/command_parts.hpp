@@ -1,0 +1,74 @@
+#pragma once
+
+#include "conelane/detectors.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "experiments/comparison/comparison.hpp"
+#include "experiments/cross_validation/course_family.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+/// What several commands do.
+namespace conelane::experiments {
+
+/// Stands for standard input and standard output.
+inline constexpr const char* kStandardStream = "-";
+
+/// The families that a user lists as NAME=SPEC, in the order in which their names first occur; another SPEC
+/// with the same name is added to that family. Throws CLI::ValidationError naming a text of another form.
+[[nodiscard]] std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts);
+
+/// The weights that `conelane train front` wrote. They are checked at once: before the work. Throws InputError.
+[[nodiscard]] WeightsBytes read_front_weights_bytes(const std::filesystem::path& file);
+
+/// The scene of that id in a file. Throws InputError naming --id if there is none.
+[[nodiscard]] AnnotatedScene scene_named(const std::string& id, const std::filesystem::path& scenes_file);
+
+/// The scenes of a file, also by their ids.
+class ScenesById {
+  public:
+    explicit ScenesById(std::filesystem::path file);
+    [[nodiscard]] const std::vector<AnnotatedScene>& all() const { return scenes_; }
+    /// The scene that a line of another file is about. Throws InputError if there is none.
+    [[nodiscard]] const AnnotatedScene& of(const std::string& id, const std::filesystem::path& file,
+                                           std::size_t line) const;
+
+  private:
+    std::filesystem::path file_;
+    std::vector<AnnotatedScene> scenes_;
+    std::unordered_map<std::string, const AnnotatedScene*> by_id_;
+};
+
+/// Output line by line: a file that appears when it is complete, or standard output at once.
+class LineOutput {
+  public:
+    explicit LineOutput(const std::string& out);
+    /// Throws std::system_error if the line cannot be written.
+    void put(const std::string& line);
+    void commit();
+
+  private:
+    std::optional<AtomicFile> file_;
+};
+
+/// Throws InputError if the directory holds a report.html that is not a page of this program, which would
+/// be overwritten.
+void require_own_page(const std::filesystem::path& directory);
+
+/// The end of a comparison: prints its summary and where its files are. With `with_page` it writes report.html
+/// beside them; if Python or matplotlib is missing, it says so, and the results are complete without the
+/// page. Throws if another failure prevents the page, such as a full disk, and like report_errors.
+void finish_comparison(const ComparisonOutcome& outcome, const std::filesystem::path& directory,
+                       bool with_page = true);
+
+/// The end of every command that answers scenes: a line on stderr for each method with errors among its
+/// answers. Throws CLI::RuntimeError of exit code 1 if a method answered nothing at all. What the command
+/// writes is in place by then.
+void report_errors(const AnswerErrors& errors);
+
+}  // namespace conelane::experiments
