@@ -182,7 +182,8 @@ std::string score_table(std::span<const ScoreRow> rows) {
     std::ranges::move(published_lines(rows), std::back_inserter(lines));
     std::vector<TextTable::Column> columns;
     for (const std::string_view title : kTitles) {
-        if (title != "condition" || std::ranges::any_of(lines, [&](const Line& line) { return line.contains(title); }))
+        if (title != "condition" ||
+            std::ranges::any_of(lines, [&](const Line& line) { return line.contains(title); }))
             columns.push_back({std::string(title), columns.empty()});
     }
     TextTable table(columns, 2);

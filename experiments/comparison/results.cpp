@@ -1,9 +1,9 @@
 #include "experiments/comparison/results.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_fields.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "evaluation/formats/json_fields.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/progress/progress.hpp"
 

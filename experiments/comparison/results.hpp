@@ -1,11 +1,11 @@
 #pragma once
 
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/scoring/centre_line_error.hpp"
 #include "evaluation/scoring/lane_failure.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/score_table.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/run_record.hpp"
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "evaluation/files/folder_lock.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/outside/outside_detector.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/comparison/runner.hpp"
 
 #include <filesystem>

@@ -1,9 +1,9 @@
 #include "program/commands/command_parts.hpp"
 
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/front_weights_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
 
@@ -95,7 +95,8 @@ void LineOutput::put(const std::string& line) {
     std::ostream& stream = file_ ? file_->stream() : std::cout;
     errno = 0;
     stream << line << '\n' << std::flush;
-    if (!stream) throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
+    if (!stream)
+        throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
 }
 
 void LineOutput::commit() {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "conelane/detectors.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/cross_validation/course_family.hpp"
 
@@ -23,7 +23,8 @@ inline constexpr const char* kStandardStream = "-";
 /// with the same name is added to that family. Throws CLI::ValidationError naming a text of another form.
 [[nodiscard]] std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts);
 
-/// The weights that `conelane train front` wrote. They are checked at once: before the work. Throws InputError.
+/// The weights that `conelane train front` wrote. They are checked at once: before the work. Throws
+/// InputError.
 [[nodiscard]] WeightsBytes read_front_weights_bytes(const std::filesystem::path& file);
 
 /// The scene of that id in a file. Throws InputError naming --id if there is none.
@@ -60,9 +61,10 @@ class LineOutput {
 /// be overwritten.
 void require_own_page(const std::filesystem::path& directory);
 
-/// The end of a comparison: prints its summary and where its files are. With `with_page` it writes report.html
-/// beside them; if Python or matplotlib is missing, it says so, and the results are complete without the
-/// page. Throws if another failure prevents the page, such as a full disk, and like report_errors.
+/// The end of a comparison: prints its summary and where its files are. With `with_page` it writes
+/// report.html beside them; if Python or matplotlib is missing, it says so, and the results are complete
+/// without the page. Throws if another failure prevents the page, such as a full disk, and like
+/// report_errors.
 void finish_comparison(const ComparisonOutcome& outcome, const std::filesystem::path& directory,
                        bool with_page = true);
 

@@ -1,5 +1,5 @@
 #include "evaluation/scoring/statistics.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
@@ -141,8 +141,9 @@ void add_compare_command(CLI::App& program) {
         if (options->is_merge) {
             if (options->shards.empty()) throw CLI::RequiredError("shards");
             require_own_page(options->directory);
-            return finish_comparison(merge(options->shards, options->directory, options->comparison.overwrite),
-                                     options->directory);
+            return finish_comparison(
+                merge(options->shards, options->directory, options->comparison.overwrite),
+                options->directory);
         }
         choose_defaults(command, *options);
         std::vector<std::optional<std::size_t>> sizes{options->nearest};

@@ -1,6 +1,6 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"

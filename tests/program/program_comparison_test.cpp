@@ -1,7 +1,7 @@
 // Folders of comparisons: written, resumed, merged.
 
-#include "evaluation/files/folder_lock.hpp"
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/testing.hpp"
 
@@ -32,8 +32,8 @@ TEST_F(Program, CompareWritesATableAndItsData) {
     }
     // Scoring the stored lanes again gives the same table, and without --wide the same summary.
     std::string score = "score --scenes results/scenes.scenes.jsonl --lanes";
-    for (const char* method : {"rld-cbc", "rld-pair", "rld-shape", "front", "clc", "clc-paper",
-                               "delaunay-beam", "astar-lane"})
+    for (const char* method :
+         {"rld-cbc", "rld-pair", "rld-shape", "front", "clc", "clc-paper", "delaunay-beam", "astar-lane"})
         score += std::string(" results/") + method + ".lanes.jsonl";
     EXPECT_EQ(run(score + " --wide").output, text_of(path("results") / "table.txt"));
     const Outcome summary = run(score);

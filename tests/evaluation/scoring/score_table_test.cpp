@@ -1,6 +1,6 @@
 #include "evaluation/scoring/score_table.hpp"
 
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/formats/json_node.hpp"
 #include "evaluation/scoring/published_figures.hpp"
 #include "tests/support/testing.hpp"
 
