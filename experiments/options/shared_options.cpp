@@ -6,7 +6,6 @@
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/options/whole_number.hpp"
 
 #include <algorithm>
 #include <array>
@@ -29,13 +28,18 @@ namespace fs = std::filesystem;
 constexpr const char* kOutput = "output";
 constexpr unsigned kMaxThreads = 1024;
 
-/// The fault of the text of a seed, or nothing. Negative and larger numbers would wrap around.
-std::string seed_fault(const std::string& text) {
-    std::uint64_t seed = 0;
+/// Nothing if the text is anything else. Streams would let negative and larger numbers wrap around.
+std::optional<std::uint64_t> number_in(const std::string& text) {
+    std::uint64_t number = 0;
     const char* const end = text.data() + text.size();
-    const auto [rest, error] = std::from_chars(text.data(), end, seed);
-    if (error == std::errc{} && rest == end) return {};
-    return fmt::format("'{}' is not a non-negative integer of 64 bits", text);
+    const auto [rest, error] = std::from_chars(text.data(), end, number);
+    if (error != std::errc{} || rest != end) return std::nullopt;
+    return number;
+}
+
+/// The fault of the text of a seed, or nothing.
+std::string seed_fault(const std::string& text) {
+    return number_in(text) ? "" : fmt::format("'{}' is not a non-negative integer of 64 bits", text);
 }
 
 /// The reason why a file cannot be written, or nothing.
@@ -128,6 +132,35 @@ std::string time_limit_fault(const std::string& text) {
 }
 
 }  // namespace
+
+CLI::Validator whole_number(std::size_t least, std::size_t most) {
+    const auto fault = [least, most](const std::string& text) -> std::string {
+        const auto number = number_in(text);
+        if (number && *number >= least && *number <= most) return {};
+        return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+    };
+    return {fault, fmt::format("in [{} - {}]", least, most)};
+}
+
+std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option,
+                                                       std::span<const std::string> texts) {
+    std::vector<std::optional<std::size_t>> sizes;
+    for (const std::string& text : texts) {
+        const std::optional<std::size_t> size = number_in(text);
+        if (text != "all" && size.value_or(0) == 0)
+            throw InvalidInput(option, "'" + text + "' is neither a number of cones nor all");
+        if (std::ranges::find(sizes, size) != sizes.end())
+            throw InvalidInput(option, "'" + text + "' is there twice");
+        sizes.push_back(size);
+    }
+    return sizes;
+}
+
+CLI::Option* add_tracks_option(CLI::App& command, std::vector<std::string>& tracks, const std::string& more) {
+    return command.add_option(
+        "--tracks", tracks,
+        "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE" + more);
+}
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     command

@@ -4,9 +4,11 @@
 #include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/scene_generation.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,21 @@
 
 /// Options that several commands have, declared once.
 namespace conelane::experiments {
+
+/// Largest size of a cone set.
+inline constexpr std::size_t kMaxCones = 100'000;
+
+/// Accepts the texts of whole numbers in a range. CLI::Range would report any other text as out of range.
+[[nodiscard]] CLI::Validator whole_number(std::size_t least, std::size_t most);
+
+/// Sizes of cone sets as an option gives them: a number of cones, or `all` for all visible ones (absent).
+/// Throws InvalidInput if a text is neither, or a size is there twice.
+[[nodiscard]] std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option,
+                                                                     std::span<const std::string> texts);
+
+/// --tracks SPEC...; `more` is added to the help.
+CLI::Option* add_tracks_option(CLI::App& command, std::vector<std::string>& tracks,
+                               const std::string& more = "");
 
 /// The options of scene making without --tracks, --out and --nearest. Lists not given keep their values.
 void add_scene_options(CLI::App& command, SceneOptions& options);

@@ -5,7 +5,6 @@
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/study.hpp"

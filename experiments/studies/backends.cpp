@@ -10,8 +10,6 @@
 #include "evaluation/seeded_random.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/options/cone_set_sizes.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/aslib.hpp"
 #include "experiments/studies/backend_measures.hpp"

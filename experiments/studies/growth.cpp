@@ -5,7 +5,6 @@
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"

@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/scene_file.hpp"
-#include "experiments/options/whole_number.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"

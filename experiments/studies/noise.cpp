@@ -5,7 +5,6 @@
 #include "evaluation/world/half_disc.hpp"
 #include "evaluation/world/scene_draws.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"

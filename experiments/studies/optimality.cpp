@@ -12,7 +12,6 @@
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/lane_graph_beam.hpp"

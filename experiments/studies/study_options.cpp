@@ -1,7 +1,6 @@
 #include "experiments/studies/study_options.hpp"
 
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 
 namespace conelane::experiments {
 

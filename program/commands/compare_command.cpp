@@ -2,7 +2,6 @@
 #include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
@@ -45,9 +44,7 @@ Shard parse_shard(const std::string& text) {
 
 void add_options(CLI::App& command, CompareOptions& options) {
     ComparisonOptions& comparison = options.comparison;
-    command.add_option("--tracks", comparison.tracks,
-                       "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
-                       "ones without it");
+    add_tracks_option(command, comparison.tracks, "; all generated ones without it");
     command
         .add_option("--methods", options.detectors,
                     "see `conelane methods`, separated by commas; exec:NAME=COMMAND asks any program and "

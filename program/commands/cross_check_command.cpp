@@ -1,6 +1,5 @@
 #include "experiments/cross_check/cross_check.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "program/commands/commands.hpp"
 
 #include <memory>

@@ -1,8 +1,6 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/instances/instance_library.hpp"
-#include "experiments/options/cone_set_sizes.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
 
@@ -72,9 +70,7 @@ void add_instances_command(CLI::App& program) {
     instances.scenes.ranges_m = {30.0};
     instances.scenes.every_m = 120.0;
     command.add_option("--out", options->out, "directory; a library in it is replaced")->required();
-    command
-        .add_option("--tracks", instances.tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
-        ->capture_default_str();
+    add_tracks_option(command, instances.tracks)->capture_default_str();
     command.add_option("--nearest", options->sizes, "cone-set sizes; `all` for all visible cones")
         ->delimiter(',')
         ->capture_default_str();

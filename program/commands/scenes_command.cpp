@@ -48,10 +48,7 @@ void make_scenes(const ScenesOptions& options) {
 void add_scenes_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("scenes", "scenes from tracks, with their ground truth");
     auto options = std::make_shared<ScenesOptions>();
-    command
-        .add_option("--tracks", options->tracks,
-                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
-        ->required();
+    add_tracks_option(command, options->tracks)->required();
     add_scene_options(command, options->scenes);
     add_nearest_option(command, options->scenes.nearest, "keep only the N nearest cones ahead");
     add_threads_option(command, options->scenes.threads, "number of threads; the scenes do not depend on it");

@@ -3,7 +3,6 @@
 #include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/training/front_training_run.hpp"
 #include "graph_search/front/front_weights_reader.hpp"
 #include "program/commands/commands.hpp"
@@ -86,9 +85,7 @@ void add_train_front_command(CLI::App& train_command) {
     auto options = std::make_shared<Options>();
     FrontTrainingRunOptions& run = options->run;
     FrontTrainingOptions& training = run.training;
-    command
-        .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
-        ->required();
+    add_tracks_option(command, run.tracks)->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
     command.add_option("--trust-tracks", run.trust_tracks,
                        "tracks to choose the threshold of trust on, not to learn from; without them it is "

@@ -8,7 +8,6 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
@@ -283,10 +282,7 @@ void add_tune_command(CLI::App& program) {
                        fmt::format("{}, tuned for usable lanes; RLD without it, to which the options "
                                    "from --objective to --most-nodes and from --folds to --log belong",
                                    fmt::join(tunable_names(), " or ")));
-    command
-        .add_option("--tracks", options->tracks,
-                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
-        ->required();
+    add_tracks_option(command, options->tracks)->required();
     command
         .add_option_function<std::string>(
             "--objective",
