@@ -163,15 +163,12 @@ int run(int argument_count, char** arguments) {
     } catch (const CLI::ParseError& bad_option) {
         fmt::print(stderr, "conelane: {}\n", one_line(bad_option.what()));
         return kBadInput;
-    } catch (const std::system_error& failure) {
-        if (std::ferror(stdout) != 0) {
-            write_error = failure.code().value();
-            return kBadInput;  // `flushed` reports it
-        }
-        fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
-        return kBadInput;
     } catch (const std::exception& failure) {
-        if (std::ferror(stdout) != 0) return kBadInput;  // `flushed` reports it
+        if (std::ferror(stdout) != 0) {  // `flushed` reports it
+            const auto* const known = dynamic_cast<const std::system_error*>(&failure);
+            if (known != nullptr) write_error = known->code().value();
+            return kBadInput;
+        }
         fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
         return kBadInput;
     }

@@ -20,15 +20,10 @@
 namespace conelane::experiments {
 namespace {
 
-struct DriveOptions {
+struct DriveOptions : FollowOptions {
     std::string lanes;
     std::string scenes;
-    std::string format = "json";
-    std::string out;
     std::optional<std::string> id;
-    std::optional<std::string> detector;
-    DrivableOptions drivable;
-    FollowOptions follow;  ///< the values that the other modes share are copied into it
 };
 
 std::vector<LaneRecord> chosen_lanes(const DriveOptions& options) {
@@ -71,15 +66,6 @@ AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
     return errors;
 }
 
-void follow(const DriveOptions& options) {
-    FollowOptions wanted = options.follow;
-    if (options.detector) wanted.detector = *options.detector;
-    wanted.format = options.format;
-    wanted.out = options.out;
-    wanted.drivable = options.drivable;
-    follow_frames(wanted);
-}
-
 void drive_all(const DriveOptions& options) {
     for (const auto& [name, value] : {std::pair("--lanes", &options.lanes), {"--scenes", &options.scenes}}) {
         if (value->empty()) throw InvalidInput(name, "is required, or --follow");
@@ -104,11 +90,7 @@ void drive_all(const DriveOptions& options) {
         throw InputError(options.lanes, only.line, "left",
                          "has no centre line between it and the right boundary");
     }
-    if (options.format == "tum") {
-        write_tum_csv(options.out, lanes.front().lane);
-    } else {
-        write_ft_fsd_csv(options.out, lanes.front().lane);
-    }
+    options.write_csv(lanes.front().lane);
 }
 
 }  // namespace
@@ -160,8 +142,8 @@ void add_drive_command(CLI::App& program) {
         .add_option("--step", options->drivable.step_m, "distance from point to point [m], in [0.01, 100]")
         ->check(CLI::Range(0.01, 100.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
         ->capture_default_str();
-    add_follow_options(command, options->follow);
-    command.callback([options] { options->follow.frames.empty() ? drive_all(*options) : follow(*options); });
+    add_follow_options(command, *options);
+    command.callback([options] { options->frames.empty() ? drive_all(*options) : follow_frames(*options); });
 }
 
 }  // namespace conelane::experiments

@@ -17,6 +17,10 @@
 namespace conelane::experiments {
 namespace {
 
+std::string detector_of(const FollowOptions& options) {
+    return options.detector.value_or("front-warm");
+}
+
 /// The names of the planner's options on the command line.
 std::string option_of(const std::string& key) {
     if (key == "mission" || key == "laps" || key == "weights") return "--" + key;
@@ -35,7 +39,7 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
                                                ": the others hold the closed course of a trackdrive or an "
                                                "autocross");
         }
-        wanted.detector = options.detector;
+        wanted.detector = detector_of(options);
         wanted.laps = options.laps;
         wanted.drivable = options.drivable;
         if (!options.weights.empty())
@@ -49,7 +53,7 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
 /// The plans of a run, where they are written, not only the course.
 class PlanSink {
   public:
-    explicit PlanSink(const FollowOptions& options) : detector_(options.detector) {
+    explicit PlanSink(const FollowOptions& options) : detector_(detector_of(options)) {
         if (options.format == "json") output_.emplace(options.out);
     }
     void put(const FrameLine& line, const Plan& plan) {
@@ -115,14 +119,14 @@ void write_course(const FollowOptions& options, const Planner& planner) {
         const std::string file = options.frames == kStandardStream ? "standard input" : options.frames;
         throw InputError(file, 0, "", "closes no lap: there is no course to write");
     }
-    if (options.format == "tum") {
-        write_tum_csv(options.out, *course);
-    } else {
-        write_ft_fsd_csv(options.out, *course);
-    }
+    options.write_csv(*course);
 }
 
 }  // namespace
+
+void DriveOutput::write_csv(const DrivableLane& lane) const {
+    format == "tum" ? write_tum_csv(out, lane) : write_ft_fsd_csv(out, lane);
+}
 
 void follow_frames(const FollowOptions& options) {
     if (options.format != "json" && options.out == kStandardStream) {

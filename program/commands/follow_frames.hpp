@@ -7,18 +7,24 @@
 
 namespace conelane::experiments {
 
+/// Whatever `drive` writes.
+struct DriveOutput {
+    std::string format = "json";
+    std::string out;
+    std::optional<std::string> detector;
+    DrivableOptions drivable;
+    /// The centre line as a file of the format `tum` or `ftfsd`.
+    void write_csv(const DrivableLane& lane) const;
+};
+
 /// A run of frames answered by a planner.
-struct FollowOptions {
-    std::string frames;  ///< file; "-" for standard input
+struct FollowOptions : DriveOutput {  // `out`: "-" for standard output
+    std::string frames;               ///< file; "-" for standard input
     std::string mission = "trackdrive";
-    std::string detector = "front-warm";
     std::string weights;  ///< empty: the shipped weights
     std::optional<int> laps;
     double interval_s = 0.1;  ///< between frames without time
     double time_limit_ms = 50.0;
-    std::string format = "json";
-    std::string out;  ///< "-" for standard output
-    DrivableOptions drivable;
 };
 
 /// Writes a line for each frame (`json`), or the closed course after the last frame (`tum`, `ftfsd`). Throws

@@ -16,10 +16,6 @@ class DriveCommand : public ProgramFixture {
   protected:
     Outcome drive(const std::string& arguments) { return run("drive " + arguments); }
 
-    void expect_refused(const std::string& arguments, const std::vector<std::string>& names) {
-        ProgramFixture::expect_refused("drive " + arguments, names);
-    }
-
     /// A bend to the right that starts at the origin; the right boundary is nearer in its middle. Scenes "a"
     /// and "b" are the same; "c" has no lane.
     void make_files() {
@@ -50,8 +46,6 @@ class DriveCommand : public ProgramFixture {
                    R"(], "closed": false, "latency_ms": 1, "trusted_m": 12.5})" + "\n";
         };
         file_with(found("a", "clc") + found("b", "clc") + kNone, "l.lanes.jsonl");
-        file_with(found("a", "clc") + found("a", "rld"), "two.lanes.jsonl");
-        file_with(found("a", "clc"), "one.lanes.jsonl");
     }
 
     static std::vector<std::vector<double>> rows_of(const std::string& csv) {
@@ -124,21 +118,6 @@ TEST_F(DriveCommand, WritesTheColumnsOfTumAndOfFtFsd) {
         sides_differ = sides_differ || std::abs(tum[i][2] - tum[i][3]) > 1e-3;
     }
     EXPECT_TRUE(sides_differ);  // else an exchange would not show
-}
-
-TEST_F(DriveCommand, ASingleLaneNeedsNoId) {
-    make_files();
-    EXPECT_EQ(drive("--lanes one.lanes.jsonl --scenes s.scenes.jsonl --format tum --out d.csv").exit_code, 0);
-    const std::string two = "--lanes two.lanes.jsonl --scenes s.scenes.jsonl --format tum --out e.csv ";
-    EXPECT_EQ(drive(two + "--method rld").exit_code, 0);
-    EXPECT_EQ(text_of(path("e.csv")), text_of(path("d.csv")));
-}
-
-TEST_F(DriveCommand, AFailureLeavesTheOldFileUnchanged) {
-    make_files();
-    file_with("precious\n", "d.csv");
-    expect_refused(kInputs + "--format tum --id c --out d.csv", {"status"});
-    EXPECT_EQ(text_of(path("d.csv")), "precious\n");
 }
 
 }  // namespace

@@ -328,35 +328,5 @@ TEST_F(LongRun, DetectorsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
     }
 }
 
-/// Answers are never replaced by another run without --overwrite, whatever differs.
-TEST_F(LongRun, AChangedOptionNeverDeletesResults) {
-    run_well(compare("rld-pair", "results"));
-    const auto before = contents("results");
-    for (const char* other :
-         {"--seed 7", "--every 13", "--fp 0.5", "--fp 0", "--range 25", "--time-limit 70", "--nearest 15",
-          "--methods clc", "--methods rld-pair,front", "--tracks generated:circle", "--condition car",
-          "--noise 0.1", "--candidates", "--threads 2", "--shard 0/2", "--pairing paper", "--full"}) {
-        SCOPED_TRACE(other);
-        // If an option is given twice, the last value would not count; so this replaces the first value.
-        std::string arguments = compare("rld-pair", "results");
-        const std::string option = std::string(other).substr(0, std::string(other).find(' '));
-        const std::size_t place = arguments.find(option + " ");
-        if (place != std::string::npos) {
-            const std::size_t next = arguments.find(" --", place);
-            arguments.erase(place, next == std::string::npos ? next : next + 1 - place);
-        }
-        const Outcome outcome = run(arguments + " " + other);
-        EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
-        EXPECT_THAT(outcome.errors, HasSubstr("results"));
-        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
-        EXPECT_EQ(contents("results"), before);
-    }
-    // With --overwrite they are replaced, but not if an option is invalid.
-    expect_refused(compare("rld-pair", "results") + " --overwrite --shard 99/100", {"--shard"});
-    EXPECT_EQ(contents("results"), before);
-    run_well(compare("rld-pair", "results") + " --seed 7 --overwrite");
-    EXPECT_NE(contents("results"), before);
-}
-
 }  // namespace
 }  // namespace conelane::experiments

@@ -101,26 +101,6 @@ TEST_F(Program, AStoppedComparisonResumes) {
     EXPECT_EQ(results_in("stopped").size(), 8U * 2U * 2U);  // detectors, conditions, rates
 }
 
-TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedWithoutOverwrite) {
-    const std::string clc = "compare --tracks generated:circle --every 15 --methods clc --out results ";
-    run_well(clc + "--fp 0");
-    const std::string lanes = text_of(path("results") / "clc.lanes.jsonl");
-    const std::string record = text_of(path("results") / "run.json");
-    expect_refused(clc + "--fp 0,0.3", {"results", "differs in fp", "--overwrite"});
-    expect_refused(clc + "--fp 0 --time-limit 77", {"results", "time_limit_ms", "--overwrite"});
-    expect_refused("sweep --tracks generated:circle --sizes 8 --out results", {"results", "--overwrite"});
-    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes);
-    EXPECT_EQ(text_of(path("results") / "run.json"), record);
-    run_well(clc + "--fp 0");
-    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes)
-        << "times of the first run: it has resumed";
-    const std::size_t before = lanes_in(path("results") / "clc.lanes.jsonl").size();
-    run_well(clc + "--fp 0,0.3 --overwrite");
-    EXPECT_EQ(lanes_in(path("results") / "clc.lanes.jsonl").size(), 2 * before);
-    std::filesystem::remove(path("results") / "run.json");
-    expect_refused(clc + "--fp 0", {"results", "run.json", "--overwrite"});
-}
-
 TEST_F(Program, OneComparisonAtATimeWritesIntoAFolder) {
     const std::string clc =
         "compare --tracks generated:circle --every 15 --methods clc --fp 0 --out results ";

@@ -1,7 +1,6 @@
 // Outputs of the program: it tries them before the work, never overwrites its input, and keeps an old result
 // until a new one is complete.
 
-#include "evaluation/formats/parameter_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"
@@ -28,45 +27,6 @@ TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
     run_well("detect --method clc --scenes a.scenes.jsonl --out pipe");
     EXPECT_TRUE(
         wait_until([&] { return text_of(path("read")).find("\"scene\":\"a\"") != std::string::npos; }));
-}
-
-TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
-    file_with("old\n", "x.lanes.jsonl");
-    file_with("{", "bad.scenes.jsonl");
-    EXPECT_EQ(run("detect --method clc --scenes bad.scenes.jsonl --out x.lanes.jsonl").exit_code, 2);
-    EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
-}
-
-/// Through another name, links or the companion: no input is overwritten.
-TEST_F(Program, AnOutputMustNotBeAnInput) {
-    make_scenes("--fp 0.2");
-    const std::string scenes = text_of(path("s.scenes.jsonl"));
-    std::filesystem::create_symlink(path("s.scenes.jsonl"), path("link"));
-    std::filesystem::create_hard_link(path("s.scenes.jsonl"), path("hard"));
-    std::filesystem::create_directory(path("sub"));
-    for (const char* command : {"detect --method clc", "solve", "certify", "export --id a"}) {
-        for (const char* out :
-             {"s.scenes.jsonl", "./sub/../s.scenes.jsonl", "link", "hard", "s.tracks.json"}) {
-            expect_refused(std::string(command) + " --scenes s.scenes.jsonl --out " + out,
-                           {"--out", out, "--scenes"});
-        }
-        expect_refused(std::string(command) + " --scenes link --out s.scenes.jsonl", {"--out", "--scenes"});
-    }
-    run_well("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl");
-    expect_refused("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json l.lanes.jsonl",
-                   {"--json", "l.lanes.jsonl", "--lanes"});
-    run_well("certify --scenes s.scenes.jsonl --out c.certificates.jsonl");
-    write_rld_parameters(path("p.json"), RldParameters{});
-    expect_refused("solve --scenes s.scenes.jsonl --params p.json --out p.json", {"--out", "--params"});
-    file_with("tag,x,y,direction,x_variance,y_variance,xy_covariance\n", "t.csv");
-    expect_refused("scenes --tracks eufs:t.csv --out t.csv", {"--out", "--tracks"});
-    std::filesystem::create_directory(path("r"));
-    file_with("", "r/results.jsonl");
-    expect_refused("report --results r --out r/results.jsonl", {"--out", "--results"});
-    EXPECT_EQ(text_of(path("s.scenes.jsonl")), scenes);
-    // A value that is not a file may be the name of a file.
-    run_well("detect --method clc --scenes s.scenes.jsonl --out clc");
-    run_well("detect --method clc --scenes s.scenes.jsonl --out clc");
 }
 
 TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {

@@ -35,15 +35,6 @@ TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
     EXPECT_THAT(bad.output, HasSubstr(" passed, 1 failed"));
 }
 
-TEST_F(Program, SolveCountsTheAnswersByStatus) {
-    file_with(R"({"id":"a","pose":{"x":0,"y":0,"yaw":0},"cones":[{"id":1,"x":1,"y":1}]})"
-              "\n"
-              R"({"id":"b","pose":{"x":0,"y":0,"yaw":0},"cones":[{"id":1,"x":1,"y":1}]})",
-              "e.scenes.jsonl");
-    EXPECT_EQ(run("solve --solver path-pair --scenes e.scenes.jsonl --out e.solutions.jsonl").output,
-              "2 scenes: 2 infeasible, in e.solutions.jsonl\n");
-}
-
 /// One line for each claim of any solver; the scene has ten cones in two rows, or too few.
 class Claims : public Program {
   protected:
@@ -178,19 +169,6 @@ TEST_F(Claims, StoppedSolutionsSayWhyAndClaimNothing) {
     EXPECT_THAT(outcome.output, HasSubstr("0 passed, 0 failed"));
 }
 
-/// Which edges face an edge depends on the cone set.
-TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
-    make_scenes("--fp 0.5");
-    const std::string on = "--nearest 12 --params shape --scenes s.scenes.jsonl ";
-    run_well("solve --solver path-pair " + on + "--out n.solutions.jsonl");
-    const Outcome good = run("check " + on + "--solutions n.solutions.jsonl");
-    EXPECT_EQ(good.exit_code, 0) << good.output;
-    EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
-    const std::string shape = "check --params shape --scenes s.scenes.jsonl --solutions n.solutions.jsonl ";
-    EXPECT_EQ(run(shape).exit_code, 0) << "the solutions say it";
-    expect_refused(shape + "--nearest 20", {"n.solutions.jsonl:1", "nearest"});
-}
-
 /// Claims made with other parameters, another pairing or other cones are refused in one line, before they are
 /// checked. Claims that do not say how they were made are checked as they are.
 TEST_F(Program, ClaimsWithOtherParametersAreNamed) {
@@ -247,10 +225,6 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
         EXPECT_EQ(bad.exit_code, 1) << forgery;
         EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
     }
-    expect_refused(on_scenes + "--pairing paper --out x.certificates.jsonl", {"near_far"});
-    expect_refused(on_scenes, {"--out", "--verify"});
-    file_with("{\"scene\": 3}\n", "bad.certificates.jsonl");
-    expect_refused(on_scenes + "--verify bad.certificates.jsonl", {"bad.certificates.jsonl:1", "scene"});
 }
 
 /// A start from outside changes no optimum: lanes of another method, with cones that are not there, and none.

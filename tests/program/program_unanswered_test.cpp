@@ -37,25 +37,6 @@ TEST_F(Unanswered, ADetectionOfErrorsAloneEndsBy1) {
     EXPECT_EQ(std::ranges::count(text_of(path("d.jsonl")), '\n'), scenes);
 }
 
-TEST_F(Unanswered, AStreamOfLinesThatAreNoScenesEndsBy1) {
-    file_with("{}\n5\n", "bad");
-    expect_unanswered(run("detect --method clc --scenes - --out - <bad"),
-                      "clc: 2 of 2 answers are errors, the first to 1", "pose");
-    file_with("{}\n" + std::string(kScene) + "\n", "half");
-    const Outcome half = run_well("detect --method clc --scenes - --out - <half");
-    EXPECT_THAT(half.errors, HasSubstr("clc: 1 of 2 answers are errors"));
-}
-
-TEST_F(Unanswered, ASolverThatTakesNoneOfTheScenesEndsBy1) {
-    make_scenes("--fp 0.3");
-    expect_unanswered(run("solve --solver exhaustive --scenes s.scenes.jsonl --out s.solutions.jsonl"),
-                      "exhaustive: ", "answers are errors");
-    EXPECT_THAT(text_of(path("s.solutions.jsonl")), HasSubstr("\"status\":\"error\""));
-    const Outcome solved =
-        run_well("solve --solver path-pair --scenes s.scenes.jsonl --out s.solutions.jsonl");
-    EXPECT_EQ(solved.errors, "");
-}
-
 TEST_F(Unanswered, AComparisonInWhichOneDetectorAnswersNothingEndsBy1) {
     const Outcome outcome = run(
         "compare --tracks generated:circle --condition paper --fp 0 --every 30 --methods exec:mine=false clc "

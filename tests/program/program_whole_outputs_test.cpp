@@ -131,15 +131,6 @@ TEST_F(WholeOutputs, OfInstancesOnAFullDiskAreNotWritten) {
 constexpr const char* kCompare =
     "compare --tracks generated:circle --condition paper --fp 0 --every 30 --methods clc --out ";
 
-TEST_F(WholeOutputs, AComparisonDoesNotReplaceAPageOfAnother) {
-    fs::create_directory(path("r"));
-    file_with("<html>my thesis</html>\n", "r/report.html");
-    expect_refused(kCompare + std::string("r"), {"r/report.html", "is not a page of conelane"});
-    expect_refused(kCompare + std::string("r --overwrite"), {"r/report.html"});
-    EXPECT_EQ(contents("r").size(), 1U) << "refused before the work";
-    EXPECT_EQ(text_of(path("r/report.html")), "<html>my thesis</html>\n");
-}
-
 TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
     run_well(kCompare + std::string("r"));
     if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
@@ -169,21 +160,6 @@ TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNotWritten) {
     EXPECT_EQ(run("report --results r --out page.html --png disk").exit_code, 2);
     EXPECT_THAT(contents("disk"), testing::IsEmpty()) << "some pictures";
     EXPECT_FALSE(fs::exists(path("page.html")));
-}
-
-/// /dev/full rejects every write.
-TEST_F(WholeOutputs, AFailureSaysWhy) {
-    make_scenes("");
-    for (const char* command : {"detect --method clc", "solve --solver path-pair", "certify",
-                                "export --id kidney/pose_0000/fp_0.00/range_30"}) {
-        const std::string full = std::string(command) == "export --id kidney/pose_0000/fp_0.00/range_30"
-                                     ? "full.mps"
-                                     : "/dev/full";
-        if (full == "full.mps") fs::create_symlink("/dev/full", path("full.mps"));
-        const Outcome outcome = run(std::string(command) + " --scenes s.scenes.jsonl --out " + full);
-        EXPECT_EQ(outcome.exit_code, 2) << command;
-        EXPECT_THAT(outcome.errors, HasSubstr(": No space left on device\n")) << command;
-    }
 }
 
 }  // namespace
