@@ -170,13 +170,6 @@ TEST_F(FollowCommand, ALapGivesTheCourseAndTheStop) {
     EXPECT_NE(plans_in(text_of(path("e.jsonl"))).back().at("state"), "finished");
 }
 
-TEST_F(FollowCommand, WhereEveryFrameIsRefusedNothingIsAnswered) {
-    file_with("no frame\n", "in.jsonl");
-    const Outcome outcome = follow("--follow - --out - <in.jsonl");
-    EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_EQ(plans_in(outcome.output).size(), 1U);
-}
-
 TEST_F(FollowCommand, ARealSkidpadIsFollowed) {
     const std::filesystem::path file = recorded_data() / "ft_fsd" / "skidpad.json";
     if (!std::filesystem::exists(file)) {

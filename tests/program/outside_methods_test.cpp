@@ -322,53 +322,6 @@ TEST_F(FinishedLanes, ThatMissAnAnswerCountItAsAnError) {
     EXPECT_THAT(table_, HasSubstr("the lanes file has no answer to this scene"));
 }
 
-TEST_F(FinishedLanes, AreRefusedBeforeTheWorkIfInvalid) {
-    const auto refuse = [&](const std::vector<json>& theirs, const std::vector<std::string>& names) {
-        write_theirs(theirs);
-        expect_refused("score --scenes s.scenes.jsonl --methods lanes:them=theirs.lanes.jsonl --json rows",
-                       names);
-        expect_refused(
-            "compare --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out r --methods "
-            "lanes:them=theirs.lanes.jsonl",
-            names);
-    };
-    refuse({clc_[0], clc_[1], clc_[0]}, {"theirs.lanes.jsonl:3: scene", "twice, first on line 1"});
-    json wrong = clc_[1];
-    wrong["left"] = {1234567};
-    refuse({clc_[0], wrong}, {"theirs.lanes.jsonl:2: left", "1234567"});
-    wrong = clc_[1];
-    wrong.erase("latency_ms");
-    refuse({clc_[0], wrong}, {"theirs.lanes.jsonl:2: latency_ms", "is missing"});
-    wrong["scene"] = "of another set";
-    wrong["latency_ms"] = 1;
-    refuse({wrong}, {"theirs.lanes.jsonl", "answers none of the scenes"});
-    refuse({}, {"theirs.lanes.jsonl", "answers none of the scenes"});
-    file_with(R"({"colour_used": "no"})", "theirs.method.json");
-    refuse(clc_, {"theirs.method.json", "colour_used", "must be true or false"});
-    std::filesystem::remove(path("theirs.method.json"));
-    expect_refused(
-        "score --scenes s.scenes.jsonl --methods lanes:them=theirs.lanes.jsonl --json theirs.lanes.jsonl",
-        {"--json", "theirs.lanes.jsonl"});
-    EXPECT_EQ(json_lines("theirs.lanes.jsonl"), clc_);
-}
-
-TEST_F(FinishedLanes, ThatChangeAreAnotherComparison) {
-    const std::string compare =
-        "compare --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out r --methods "
-        "lanes:them=theirs.lanes.jsonl";
-    write_theirs(clc_);
-    run_well(compare);
-    run_well(compare);
-    clc_[0]["latency_ms"] = 9.0;
-    write_theirs(clc_);
-    expect_refused(compare, {"differs in methods", "--overwrite"});
-    std::filesystem::copy(path("theirs.lanes.jsonl"), path("r/mine.lanes.jsonl"));
-    expect_refused(
-        "compare --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out r --overwrite --methods "
-        "lanes:them=r/mine.lanes.jsonl",
-        {"r/mine.lanes.jsonl", "directory of the results"});
-}
-
 TEST_F(OutsideDetectors, TheirCardsAreInTheRecordAndTheRows) {
     file_with("cat >/dev/null\n", "silent.sh");
     file_with(

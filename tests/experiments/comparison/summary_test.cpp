@@ -70,6 +70,20 @@ class Summaries : public testing::Test {
     std::vector<ScoredMethod> methods_;
 };
 
+/// Numbers of methods, conditions, rates, ranges and cone-set sizes.
+std::vector<std::array<std::size_t, 5>> combinations() {
+    std::vector<std::array<std::size_t, 5>> all;
+    for (const std::size_t methods : {1U, 8U, 40U}) {
+        for (const std::size_t conditions : {1U, 2U, 4U}) {
+            for (const std::size_t rates : {1U, 4U, 30U}) {
+                for (const auto& [ranges, sizes] : {std::pair{1U, 1U}, {3U, 1U}, {1U, 12U}, {3U, 12U}})
+                    all.push_back({methods, conditions, rates, ranges, sizes});
+            }
+        }
+    }
+    return all;
+}
+
 TEST_F(Summaries, OfNothingAreEmpty) {
     EXPECT_EQ(text(), "");
 }
@@ -131,43 +145,26 @@ TEST_F(Summaries, ConeSetSizesAreColumns) {
 }
 
 TEST_F(Summaries, FitWhateverIsCompared) {
-    for (const std::size_t methods : {1U, 8U, 40U}) {
-        for (const std::size_t conditions : {1U, 2U, 4U}) {
-            for (const std::size_t rates : {1U, 4U, 30U}) {
-                for (const std::size_t ranges : {1U, 3U}) {
-                    for (const std::size_t sizes : {1U, 12U}) {
-                        methods_.clear();
-                        scenes_.clear();
-                        records_.clear();
-                        for (std::size_t m = 0; m < methods; ++m) {
-                            const std::string name = "a-method-of-a-long-name-" + std::to_string(m);
-                            for (std::size_t c = 0; c < conditions; ++c) {
-                                for (std::size_t r = 0; r < rates; ++r) {
-                                    for (std::size_t g = 0; g < ranges; ++g) {
-                                        const std::size_t s = (m + c + r + g) % sizes;
-                                        add(name,
-                                            {"condition" + std::to_string(c), 0.01 * static_cast<double>(r),
-                                             20.0 + 10.0 * static_cast<double>(g)},
-                                            static_cast<LaneFailure>((m + r) % kLaneFailureCount), 12345.678,
-                                            sizes > 1 ? std::optional(s) : std::nullopt, m == 0);
-                                    }
-                                }
-                            }
-                        }
-                        SCOPED_TRACE(testing::Message() << methods << ' ' << conditions << ' ' << rates << ' '
-                                                        << ranges << ' ' << sizes);
-                        const std::string all = text({"a note", std::string(300, 'x')});
-                        expect_to_fit(all);
-                        if (methods == 40U) {
-                            EXPECT_THAT(all, HasSubstr(" more method"));
-                        }
-                        if (methods == 1U) {
-                            EXPECT_THAT(all, Not(HasSubstr(" more method")));
-                        }
-                    }
-                }
-            }
+    for (const auto& [methods, conditions, rates, ranges, sizes] : combinations()) {
+        SCOPED_TRACE(testing::Message()
+                     << methods << ' ' << conditions << ' ' << rates << ' ' << ranges << ' ' << sizes);
+        methods_.clear();
+        scenes_.clear();
+        records_.clear();
+        for (std::size_t i = 0; i < methods * conditions * rates * ranges; ++i) {
+            const std::size_t m = i / (conditions * rates * ranges);
+            const std::size_t c = i / (rates * ranges) % conditions;
+            const std::size_t r = i / ranges % rates;
+            const std::size_t g = i % ranges;
+            add("a-method-of-a-long-name-" + std::to_string(m),
+                {"condition" + std::to_string(c), 0.01 * static_cast<double>(r),
+                 20.0 + 10.0 * static_cast<double>(g)},
+                static_cast<LaneFailure>((m + r) % kLaneFailureCount), 12345.678,
+                sizes > 1 ? std::optional((m + c + r + g) % sizes) : std::nullopt, m == 0);
         }
+        const std::string all = text({"a note", std::string(300, 'x')});
+        expect_to_fit(all);
+        EXPECT_TRUE(methods == 8U || (all.find(" more method") != std::string::npos) == (methods == 40U));
     }
 }
 
