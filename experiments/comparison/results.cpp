@@ -12,6 +12,7 @@
 #include <iterator>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,6 +20,9 @@
 
 namespace conelane::experiments {
 namespace {
+
+// Else a vector that grows would copy the records, which the scores refer to.
+static_assert(std::is_nothrow_move_constructible_v<ScoredMethod>);
 
 ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
     return {record.detector, scene.false_positive_rate, scene.range_m, record.nearest, scene.condition};

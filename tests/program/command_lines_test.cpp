@@ -58,10 +58,7 @@ class CommandLines : public ProgramFixture, public testing::WithParamInterface<S
         } else if (exit_code == 2) {
             expect_refused(command, words);
         } else {
-            const Outcome outcome = run(command);
-            EXPECT_EQ(outcome.exit_code, exit_code) << command;
-            for (const std::string& word : words)
-                EXPECT_THAT(outcome.output + outcome.errors, testing::HasSubstr(word)) << command;
+            ProgramFixture::expect_end(command, exit_code, words);
         }
     }
 };

@@ -40,20 +40,6 @@ class LongRun : public ProgramFixture {
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
 
-    /// Waits until the condition holds or the program ends. Returns whether it holds.
-    static bool wait_until_ends_or(pid_t started, const std::function<bool()>& holds) {
-        for (int wait = 0; wait < 60'000; ++wait) {
-            if (holds()) return true;
-            siginfo_t state{};
-            if (::waitid(P_PID, static_cast<id_t>(started), &state, WEXITED | WNOHANG | WNOWAIT) != 0 ||
-                state.si_pid != 0) {
-                return holds();
-            }
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        return false;
-    }
-
     /// Answers without their times, and the status of each.
     [[nodiscard]] std::vector<std::pair<Lane, LaneStatus>> answers(const std::string& file) const {
         std::vector<std::pair<Lane, LaneStatus>> all;
@@ -112,7 +98,7 @@ TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
         const std::string before = whole_laps(text_of(part), text_of(path("whole") / lanes));
         const pid_t started = start(compare(detector, "killed", kEvery_m));
         // Some milliseconds after the answers of another lap: in the middle of the next one.
-        wait_until_ends_or(started, [&] {
+        wait_until(started, [&] {
             return whole_laps(text_of(part), text_of(path("whole") / lanes)).size() > before.size() ||
                    fs::exists(path("killed") / lanes);
         });
@@ -191,7 +177,7 @@ TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
     for (int attempt = 0; attempt < 20 && state.si_code != CLD_STOPPED; ++attempt) {
         if (attempt > 0) (void)wait_for(first);
         first = start(compare("rld-cbc", "shared") + " --overwrite");
-        wait_until_ends_or(first, [&] { return fs::exists(part); });
+        wait_until(first, [&] { return fs::exists(part); });
         ::kill(-first, SIGSTOP);
         const auto process = static_cast<id_t>(first);
         ASSERT_EQ(::waitid(P_PID, process, &state, WSTOPPED | WEXITED | WNOWAIT), 0);

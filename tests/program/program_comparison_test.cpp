@@ -141,9 +141,8 @@ TEST_F(Program, MergedShardsEqualOneRun) {
 TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
     const std::string hairpins = "--tracks generated:tight_hairpins --fp 0,0.3 --every 22 ";
     const std::string degenerate = "tight_hairpins/pose_0001/fp_0.00/range_30";
-    const Outcome made = run_well("scenes --range 30 " + hairpins + "--out s.scenes.jsonl");
-    EXPECT_THAT(made.errors, HasSubstr("2 scenes are left out"));
-    EXPECT_THAT(made.errors, HasSubstr(degenerate));
+    expect_end("scenes --range 30 " + hairpins + "--out s.scenes.jsonl", 0,
+               {"2 scenes are left out", degenerate});
     const std::string scenes = text_of(path("s.scenes.jsonl"));
     EXPECT_THAT(scenes, testing::Not(HasSubstr("/pose_0001/")));
     EXPECT_THAT(scenes, testing::AllOf(HasSubstr("/pose_0000/"), HasSubstr("/pose_0002/")));
@@ -153,9 +152,8 @@ TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
 
     const std::string compare = "compare --methods clc --condition paper " + hairpins;
     for (const char* shard : {"0", "1"}) {
-        const Outcome part = run_well(compare + "--shard " + shard + "/2 --out part" + shard);
-        EXPECT_THAT(part.errors, HasSubstr("1 scene is left out"));
-        EXPECT_THAT(part.output, HasSubstr("1 scene is left out"));
+        expect_end(compare + "--shard " + shard + "/2 --out part" + shard, 0,
+                   {"1 scene is left out", "1 scene is left out"});
     }
     const Outcome merged = run_well("merge part0 part1 --out merged");
     EXPECT_THAT(text_of(path("merged") / "table.txt"), HasSubstr("2 scenes are left out"));
@@ -169,8 +167,7 @@ TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
 }
 
 TEST_F(Program, SweepComparesConeSetSizes) {
-    const Outcome outcome = run_well("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep");
-    EXPECT_THAT(outcome.output, HasSubstr("  n=8  n=12"));
+    expect_end("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep", 0, {"  n=8  n=12"});
     EXPECT_THAT(text_of(path("sweep") / "table.txt"), HasSubstr("clc n=8"));
     for (const LaneRecord& record : read_lanes(path("sweep") / "rld-cbc.n008.lanes.jsonl")) {
         EXPECT_EQ(record.nearest, 8U);

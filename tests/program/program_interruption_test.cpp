@@ -38,13 +38,8 @@ class Interruption : public Program {
         ::setenv("TMPDIR", "tmp", 1);
         const pid_t child = start(arguments);
         ::unsetenv("TMPDIR");
-        int status = 0;
-        bool ready = false;
-        for (int wait = 0; wait < 6000 && !(ready = begun() && waits_for(child, signal)); ++wait) {
-            ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << text_of(path("stderr"));
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-        EXPECT_TRUE(ready);
+        EXPECT_TRUE(wait_until(child, [&] { return begun() && waits_for(child, signal); }))
+            << text_of(path("stderr"));
         EXPECT_TRUE(end_by(child, signal));
         EXPECT_EQ(text_of(path("stderr")), "conelane: interrupted\n");
         EXPECT_EQ(text_of(path("stdout")), "");

@@ -21,18 +21,14 @@ using testing::HasSubstr;
 TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
     make_scenes("--fp 0.2");
     run_well("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl");
-    const Outcome good = run("check --scenes s.scenes.jsonl --solutions s.solutions.jsonl");
-    EXPECT_EQ(good.exit_code, 0) << good.output;
-    EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
+    expect_end("check --scenes s.scenes.jsonl --solutions s.solutions.jsonl", 0, {" passed, 0 failed"});
 
     std::string forged = text_of(path("s.solutions.jsonl"));
     const std::size_t objective = forged.find("\"objective\":-");
     ASSERT_NE(objective, std::string::npos);
     forged.insert(objective + 13, "9");
     file_with(forged, "forged.solutions.jsonl");
-    const Outcome bad = run("check --scenes s.scenes.jsonl --solutions forged.solutions.jsonl");
-    EXPECT_EQ(bad.exit_code, 1);
-    EXPECT_THAT(bad.output, HasSubstr(" passed, 1 failed"));
+    expect_end("check --scenes s.scenes.jsonl --solutions forged.solutions.jsonl", 1, {" passed, 1 failed"});
 }
 
 /// One line for each claim of any solver; the scene has ten cones in two rows, or too few.
@@ -57,29 +53,32 @@ class Claims : public Program {
                    .dump() +
                "\n";
     }
-    Outcome check(const std::string& solutions, const std::string& options = "") {
+    void expect_check(const std::string& solutions, int exit_code, const std::vector<std::string>& words,
+                      const std::string& options = "") {
         file_with(solutions, "c.solutions.jsonl");
-        return run("check --scenes c.scenes.jsonl --solutions c.solutions.jsonl " + options);
+        expect_end("check --scenes c.scenes.jsonl --solutions c.solutions.jsonl " + options, exit_code,
+                   words);
+    }
+    /// The solution of the scenes in c.scenes.jsonl.
+    std::string solved(const std::string& options = "") {
+        run_well("solve --scenes c.scenes.jsonl --out solved.jsonl " + options);
+        return text_of(path("solved.jsonl"));
     }
 };
 
 TEST_F(Claims, AnUnprovenInfeasibleFails) {
     file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
-    for (const char* solver : {"cbc", "path-pair", "exhaustive", "stranger"}) {
-        const Outcome outcome = check(infeasible("lane", solver));
-        EXPECT_EQ(outcome.exit_code, 1) << solver;
-        EXPECT_THAT(outcome.output, HasSubstr("lane: " + std::string(solver) + " claims infeasible, but"));
-        EXPECT_THAT(outcome.output, HasSubstr("0 passed, 1 failed"));
+    for (const std::string solver : {"cbc", "path-pair", "exhaustive", "stranger"}) {
+        expect_check(infeasible("lane", solver), 1,
+                     {"lane: " + solver + " claims infeasible, but", "0 passed, 1 failed"});
     }
     // Too many cones for the checker's own search: a solver finds the lane graph, and the checker accepts
     // it.
     make_scenes("--fp 0.3", "c");
     const std::vector<AnnotatedScene> scenes = read_scenes(path("c.scenes.jsonl"));
     std::string forged;
-    for (AnnotatedScene scene : scenes) forged += infeasible(scene.scene.id, "cbc");
-    const Outcome outcome = check(forged);
-    EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.output, HasSubstr("0 passed, " + std::to_string(scenes.size()) + " failed"));
+    for (const AnnotatedScene& scene : scenes) forged += infeasible(scene.scene.id, "cbc");
+    expect_check(forged, 1, {"0 passed, " + std::to_string(scenes.size()) + " failed"});
 }
 
 TEST_F(Claims, AProvenInfeasiblePasses) {
@@ -87,40 +86,30 @@ TEST_F(Claims, AProvenInfeasiblePasses) {
     nlohmann::json behind = scene("behind", 5);
     behind["pose"]["x"] = 100;
     file_with(scene("pair", 1).dump() + "\n" + behind.dump() + "\n", "c.scenes.jsonl");
-    const Outcome outcome = check(infeasible("pair", "path-pair") + infeasible("behind", "path-pair"));
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    EXPECT_THAT(outcome.output, HasSubstr("2 passed, 0 failed"));
+    expect_check(infeasible("pair", "path-pair") + infeasible("behind", "path-pair"), 0,
+                 {"2 passed, 0 failed"});
 }
 
 TEST_F(Claims, WhatNothingProvesIsUnverified) {
     file_with(scene("a", 30).dump() + "\n", "c.scenes.jsonl");
-    run_well("solve --scenes c.scenes.jsonl --out best.solutions.jsonl");
-    const std::string optimum = text_of(path("best.solutions.jsonl"));
+    const std::string optimum = solved();
     for (const std::string& claim : {infeasible("a", "cbc"), optimum}) {
-        const Outcome outcome = check(claim, "--time-limit 1e-6");
-        EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
-        EXPECT_THAT(outcome.output, HasSubstr("neither confirmed nor refuted"));
-        EXPECT_THAT(outcome.output, HasSubstr("1 unverified\n0 passed, 0 failed"));
+        expect_check(claim, 1, {"neither confirmed nor refuted", "1 unverified\n0 passed, 0 failed"},
+                     "--time-limit 1e-6");
     }
-    const Outcome proven = check(optimum);
-    EXPECT_EQ(proven.exit_code, 0) << proven.output;
-    EXPECT_THAT(proven.output,
-                HasSubstr("1 claimed optima and infeasibilities are proven\n1 passed, 0 failed"));
+    expect_check(optimum, 0, {"1 claimed optima and infeasibilities are proven\n1 passed, 0 failed"});
 }
 
 /// A lane graph that is no optimum, claimed to be one with a bound to match: no other line of the file
 /// refutes it.
 TEST_F(Claims, AMadeUpOptimumIsWrong) {
     file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
-    run_well("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl");
-    nlohmann::json some = nlohmann::json::parse(text_of(path("some.solutions.jsonl")));
+    nlohmann::json some = nlohmann::json::parse(solved("--nearest 8"));
     some.erase("nearest");
-    for (const char* const claimant : {"cbc", "path-pair", "stranger"}) {
+    for (const std::string claimant : {"cbc", "path-pair", "stranger"}) {
         some["solver"] = claimant;
-        const Outcome outcome = check(some.dump() + "\n");
-        EXPECT_EQ(outcome.exit_code, 1);
-        EXPECT_THAT(outcome.output, HasSubstr("lane: " + std::string(claimant) + " claims the optimum"));
-        EXPECT_THAT(outcome.output, HasSubstr("0 passed, 1 failed"));
+        expect_check(some.dump() + "\n", 1,
+                     {"lane: " + claimant + " claims the optimum", "0 passed, 1 failed"});
     }
 }
 
@@ -128,45 +117,32 @@ TEST_F(Claims, AMissingAnswerFails) {
     std::string scenes;
     for (int i = 0; i < 22; ++i) scenes += scene("s" + std::to_string(i), 5).dump() + "\n";
     file_with(scenes, "c.scenes.jsonl");
-    run_well("solve --scenes c.scenes.jsonl --out all.solutions.jsonl");
-    const std::string all = text_of(path("all.solutions.jsonl"));
-    EXPECT_EQ(check(all).exit_code, 0);
-    const Outcome one = check(all.substr(0, all.find('\n') + 1));
-    EXPECT_EQ(one.exit_code, 1);
-    EXPECT_THAT(one.output, HasSubstr("s21: cbc (tight) gives no answer"));
-    EXPECT_THAT(one.output, HasSubstr("1 passed, 21 failed"));
-    const Outcome partial = check(all.substr(0, all.find('\n') + 1), "--partial");
-    EXPECT_EQ(partial.exit_code, 0);
-    EXPECT_THAT(partial.output, HasSubstr("1 passed, 0 failed"));
+    const std::string all = solved();
+    const std::string one = all.substr(0, all.find('\n') + 1);
+    expect_check(all, 0, {});
+    expect_check(one, 1, {"s21: cbc (tight) gives no answer", "1 passed, 21 failed"});
+    expect_check(one, 0, {"1 passed, 0 failed"}, "--partial");
 }
 
 /// A claimed optimum is refuted by a better lane graph in the file.
 TEST_F(Claims, ABetterLaneGraphRefutesAnOptimum) {
     file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
-    run_well("solve --scenes c.scenes.jsonl --out best.solutions.jsonl");
-    run_well("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl");
-    nlohmann::json some = nlohmann::json::parse(text_of(path("some.solutions.jsonl")));
+    const std::string best = solved();
+    nlohmann::json some = nlohmann::json::parse(solved("--nearest 8"));
     EXPECT_EQ(some["nearest"], 8);
-    EXPECT_EQ(check(some.dump() + "\n").exit_code, 0) << "the optimum of its cone set";
+    expect_check(some.dump() + "\n", 0, {});  // the optimum of its cone set
     some.erase("nearest");
     some["solver"] = "hasty";
-    const Outcome outcome = check(some.dump() + "\n" + text_of(path("best.solutions.jsonl")));
-    EXPECT_EQ(outcome.exit_code, 1);
-    EXPECT_THAT(outcome.output, HasSubstr("lane: hasty claims the bound"));
-    EXPECT_THAT(outcome.output, HasSubstr("1 passed, 1 failed"));
+    expect_check(some.dump() + "\n" + best, 1, {"lane: hasty claims the bound", "1 passed, 1 failed"});
 }
 
 TEST_F(Claims, StoppedSolutionsSayWhyAndClaimNothing) {
     file_with(scene("lane", 8).dump() + "\n", "c.scenes.jsonl");
-    run_well("solve --solver cbc --time-limit 1e-6 --scenes c.scenes.jsonl --out c.solutions.jsonl");
-    const std::string solutions = text_of(path("c.solutions.jsonl"));
+    const std::string solutions = solved("--solver cbc --time-limit 1e-6");
     const nlohmann::json record = nlohmann::json::parse(solutions);
     EXPECT_EQ(record["status"], "stopped");
     EXPECT_EQ(record["stopped_by"], "time");
-    const Outcome outcome = check(solutions);
-    EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.output, HasSubstr("1 claim nothing"));
-    EXPECT_THAT(outcome.output, HasSubstr("0 passed, 0 failed"));
+    expect_check(solutions, 0, {"1 claim nothing", "0 passed, 0 failed"});
 }
 
 /// Claims made with other parameters, another pairing or other cones are refused in one line, before they are
@@ -205,9 +181,7 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     make_scenes("--fp 0.2");
     const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
     run_well(on_scenes + "--out s.certificates.jsonl");
-    const Outcome good = run(on_scenes + "--verify s.certificates.jsonl");
-    EXPECT_EQ(good.exit_code, 0) << good.output;
-    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+    expect_end(on_scenes + "--verify s.certificates.jsonl", 0, {" verified, 0 failed"});
 
     // A bound that is higher by 1, a multiplier below zero, a clique of edges that do not exclude each other.
     const nlohmann::json certificate = json_lines("s.certificates.jsonl").front();
@@ -221,9 +195,7 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     forgeries[3]["cone_prices"][0][0] = 123456;
     for (const nlohmann::json& forgery : forgeries) {
         file_with(forgery.dump() + "\n", "forged.certificates.jsonl");
-        const Outcome bad = run(on_scenes + "--verify forged.certificates.jsonl");
-        EXPECT_EQ(bad.exit_code, 1) << forgery;
-        EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
+        expect_end(on_scenes + "--verify forged.certificates.jsonl", 1, {"0 verified, 1 failed"});
     }
 }
 
@@ -272,24 +244,18 @@ TEST_F(Program, CertificatesCoverLearnedCosts) {
     make_scenes("--fp 0.5");
     const std::string on_scenes = "certify --params learned --scenes s.scenes.jsonl ";
     run_well(on_scenes + "--out learned.certificates.jsonl");
-    const Outcome good = run(on_scenes + "--verify learned.certificates.jsonl");
-    EXPECT_EQ(good.exit_code, 0) << good.output;
-    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+    expect_end(on_scenes + "--verify learned.certificates.jsonl", 0, {" verified, 0 failed"});
     nlohmann::json forgery = json_lines("learned.certificates.jsonl").front();
     forgery["bound"] = forgery["bound"].get<double>() + 1e-3;
     file_with(forgery.dump() + "\n", "forged.certificates.jsonl");
-    const Outcome bad = run(on_scenes + "--verify forged.certificates.jsonl");
-    EXPECT_EQ(bad.exit_code, 1) << bad.output;
-    EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
+    expect_end(on_scenes + "--verify forged.certificates.jsonl", 1, {"0 verified, 1 failed"});
 }
 
 TEST_F(Program, CertificatesCoverShapeCosts) {
     make_scenes("--fp 0.5");
     const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
     run_well(on_scenes + "--params shape --out shape.certificates.jsonl");
-    const Outcome good = run(on_scenes + "--params shape --verify shape.certificates.jsonl");
-    EXPECT_EQ(good.exit_code, 0) << good.output;
-    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+    expect_end(on_scenes + "--params shape --verify shape.certificates.jsonl", 0, {" verified, 0 failed"});
     // They are about these costs and this cone set, even if they do not say so.
     std::string unnamed;
     for (nlohmann::json record : json_lines("shape.certificates.jsonl")) {

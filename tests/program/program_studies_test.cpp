@@ -101,8 +101,7 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
         with_all += is_all ? 1 : 0;
     }
     EXPECT_EQ(with_all, 3U);
-    const Outcome list = run_well("study");
-    EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));
+    expect_end("study", 0, {"confidence-and-colour  how much more accurate"});
     const Outcome beams = run("study front-beam --scenes s.scenes.jsonl --beams 5,15 --reference-beam 40");
     EXPECT_THAT(beams.output, HasSubstr("best score"));
 }

@@ -26,16 +26,11 @@ class WholeOutputs : public Program {
     void interrupt(const std::string& arguments, int signal, const std::string& folder,
                    const std::string& part) {
         const pid_t child = start(arguments);
-        const auto begun = [&] {
+        (void)wait_until(child, [&] {
             return std::ranges::any_of(contents(folder), [&](const auto& file) {
                 return file.first.find(part) != std::string::npos;
             });
-        };
-        int status = 0;
-        for (int wait = 0; wait < 12000 && !begun(); ++wait) {
-            ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << text_of(path("stderr"));
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
+        });
         EXPECT_TRUE(end_by(child, signal)) << "it was done too early";
         fs::remove(path("stdout"));
         fs::remove(path("stderr"));

@@ -66,8 +66,19 @@ class ProgramFixture : public FileTest {
 
     /// Waits for a minute at most. Whether the condition holds.
     static bool wait_until(const std::function<bool()>& holds) {
-        for (int wait = 0; wait < 12'000 && !holds(); ++wait)
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        for (int wait = 0; wait < 60'000 && !holds(); ++wait)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return holds();
+    }
+
+    /// Waits until the condition holds or the program ends. Whether the condition holds.
+    static bool wait_until(pid_t started, const std::function<bool()>& holds) {
+        siginfo_t state{};
+        (void)wait_until([&] {
+            return holds() ||
+                   ::waitid(P_PID, static_cast<id_t>(started), &state, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+                   state.si_pid != 0;
+        });
         return holds();
     }
 
@@ -104,6 +115,15 @@ class ProgramFixture : public FileTest {
             if (entry.is_regular_file() && name != ".lock") files[name] = text_of(entry.path());
         }
         return files;
+    }
+
+    /// The program ends by this exit code, and its output or stderr has every one of the words.
+    void expect_end(const std::string& arguments, int exit_code, const std::vector<std::string>& words) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit_code, exit_code) << "conelane " << arguments << ": " << outcome.errors;
+        for (const std::string& word : words)
+            EXPECT_THAT(outcome.output + outcome.errors, testing::HasSubstr(word))
+                << "conelane " << arguments;
     }
 
     /// Bad input: exit code 2, one line on stderr that holds every one of `names`, and no new file.
