@@ -9,11 +9,9 @@
 
 #include <chrono>
 #include <csignal>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
-#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {
@@ -223,7 +221,10 @@ TEST_F(OutsideDetectors, ASignalEndsTheProgramToo) {
     const pid_t program = start(std::string(kCompare) + "r --methods 'exec:bad=OUTSIDE_PID=pid " +
                                 child("ids hang 3 marker") + "'");
     EXPECT_TRUE(wait_until([&] { return !text_of(path("marker")).empty(); }));
-    EXPECT_TRUE(end_by(program, SIGINT));
+    ::kill(program, SIGINT);  // not to its children
+    int status = 0;
+    ASSERT_EQ(::waitpid(program, &status, 0), program);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) << "status " << status;
     EXPECT_TRUE(has_ended("pid"));
 }
 

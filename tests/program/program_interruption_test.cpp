@@ -6,10 +6,8 @@
 
 #include <chrono>
 #include <csignal>
-#include <thread>
 
 #include <fcntl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 namespace conelane::experiments {

@@ -7,12 +7,7 @@
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"
 
-#include <chrono>
 #include <csignal>
-#include <thread>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {
