@@ -2,8 +2,7 @@
 
 #include "evaluation/formats/interruption.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "experiments/options/argument_words.hpp"
-#include "experiments/options/help_formatter.hpp"
+#include "experiments/options/command_line.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"

@@ -22,7 +22,8 @@
 #include <system_error>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace conelane::experiments {
 namespace {
@@ -60,6 +61,61 @@ std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOp
         lanes.emplace(method.name, read_finished_lanes(*method.outside, scenes));
     }
     return lanes;
+}
+
+/// Takes the laps from the parts in turn: lap k of the whole is the next lap of part k mod count.
+template <typename T>
+std::vector<T> interleave(std::span<const std::vector<std::size_t>> lap_starts_of_part,
+                          std::vector<std::vector<T>>& parts) {
+    std::vector<T> whole;
+    for (std::size_t lap = 0;; ++lap) {
+        const std::size_t part = lap % parts.size();
+        const std::size_t lap_of_part = lap / parts.size();
+        const std::vector<std::size_t>& starts = lap_starts_of_part[part];
+        if (lap_of_part + 1 >= starts.size()) return whole;
+        const auto begin = parts[part].begin();
+        std::ranges::move(begin + static_cast<std::ptrdiff_t>(starts[lap_of_part]),
+                          begin + static_cast<std::ptrdiff_t>(starts[lap_of_part + 1]),
+                          std::back_inserter(whole));
+    }
+}
+
+/// The directories in the order of their shards, and the record of the whole run.
+struct ShardedRun {
+    std::vector<fs::path> directories;
+    RunRecord record;
+};
+
+ShardedRun sort_shards(const std::vector<fs::path>& shards) {
+    ShardedRun run;
+    std::set<std::string> machines;
+    for (const fs::path& directory : shards) {
+        RunRecord record = read_run_record(directory);
+        const auto refuse = [&](const std::string& key, const std::string& reason) {
+            throw InputError(directory / "run.json", 0, key, reason);
+        };
+        const auto [index, count] = std::exchange(record.shard, {});
+        if (count < 2) refuse("shard", "is missing: the directory is not a shard of a run");
+        machines.insert(std::exchange(record.origin.machine, ""));
+        if (run.directories.empty()) {
+            run.record = record;
+            run.directories.resize(count);
+        }
+        const std::vector<std::string> differences = run.record.differences(record);
+        if (!differences.empty())
+            refuse(differences.front(), fmt::format("differs from that of {}", shards.front().string()));
+        if (count != run.directories.size() || index >= count)
+            refuse("shard", fmt::format("is of another run than {}", shards.front().string()));
+        if (!run.directories[index].empty())
+            refuse("shard", fmt::format("{}/{} is there twice", index, count));
+        run.directories[index] = directory;
+    }
+    for (std::size_t index = 0; index < run.directories.size(); ++index) {
+        if (run.directories[index].empty())
+            throw InputError("", 0, "shard", fmt::format("{}/{} is missing", index, run.directories.size()));
+    }
+    run.record.origin.machine = fmt::format("{}", fmt::join(machines, "; "));
+    return run;
 }
 
 }  // namespace
@@ -127,6 +183,48 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
     const fs::path echo_file = directory / kEchoFloorFile;
     if (any_program && !fs::exists(echo_file)) write_echo_floor(echo_file, measure_echo_floor(set.scenes));
     return score_directory(directory, set, record);
+}
+
+ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& directory, bool overwrite) {
+    for (const fs::path& shard : shards) {
+        std::error_code ignored;
+        if (fs::equivalent(shard, directory, ignored)) {
+            throw InputError(directory, 0, "",
+                             "is one of the shards; the joined run needs another directory");
+        }
+    }
+    const ShardedRun run = sort_shards(shards);
+    SceneSet set;
+    LeftOutScenes left_out;
+    std::vector<std::vector<AnnotatedScene>> scenes;
+    std::vector<std::vector<std::size_t>> starts;
+    for (const fs::path& shard : run.directories) {
+        const fs::path scenes_file = shard / kScenesFile;
+        scenes.push_back(read_scenes(scenes_file));
+        starts.push_back(lap_starts(scenes.back()));
+        set.tracks.merge(read_track_boundaries(track_boundaries_path(scenes_file)));
+        conelane::merge(left_out, read_left_out(track_boundaries_path(scenes_file)));
+    }
+    set.scenes = interleave<AnnotatedScene>(starts, scenes);
+
+    const FolderLock lock = open_run(directory, run.record, overwrite);
+    write_scene_set(directory / kScenesFile, set, left_out);
+    for (const MethodRecord& method : run.record.methods) {
+        std::vector<std::vector<LaneRecord>> lanes;
+        for (std::size_t part = 0; part < run.directories.size(); ++part) {
+            const fs::path file = run.directories[part] / method.lanes_file();
+            lanes.push_back(read_lanes(file));
+            if (lanes.back().size() != starts[part].back())
+                throw InputError(file, 0, "", "does not answer every scene");
+        }
+        write_lanes(directory / method.lanes_file(), interleave<LaneRecord>(starts, lanes));
+    }
+    EchoFloor echo;
+    for (const fs::path& shard : run.directories) {
+        std::ranges::copy(read_echo_floor(shard / kEchoFloorFile), std::back_inserter(echo));
+    }
+    if (!echo.empty()) write_echo_floor(directory / kEchoFloorFile, echo);
+    return score_directory(directory, set, run.record);
 }
 
 }  // namespace conelane::experiments

@@ -1,6 +1,5 @@
 #include "experiments/comparison/runner.hpp"
 
-#include "experiments/comparison/pinning.hpp"
 #include "experiments/progress/progress.hpp"
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
+#include <sched.h>
 
 namespace conelane::experiments {
 namespace {
@@ -85,6 +85,25 @@ std::vector<LaneRecord> run(const Method& method, std::span<const AnnotatedScene
     run(method, scenes, options,
         [&](std::span<const LaneRecord> lap) { std::ranges::copy(lap, std::back_inserter(records)); });
     return records;
+}
+
+struct PinnedThread::Mask {
+    cpu_set_t processors;
+};
+
+PinnedThread::PinnedThread() : before_(std::make_unique<Mask>()) {
+    const int processor = sched_getcpu();
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    if (processor >= 0) CPU_SET(static_cast<unsigned>(processor), &one);
+    if (processor < 0 || sched_getaffinity(0, sizeof(cpu_set_t), &before_->processors) != 0 ||
+        sched_setaffinity(0, sizeof(cpu_set_t), &one) != 0) {
+        before_.reset();
+    }
+}
+
+PinnedThread::~PinnedThread() {
+    if (before_) sched_setaffinity(0, sizeof(cpu_set_t), &before_->processors);
 }
 
 }  // namespace conelane::experiments

@@ -5,6 +5,7 @@
 #include "experiments/methods/method.hpp"
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,5 +22,19 @@ void run(const Method& method, std::span<const AnnotatedScene> scenes, const Run
 /// The same, all records at once.
 [[nodiscard]] std::vector<LaneRecord> run(const Method& method, std::span<const AnnotatedScene> scenes,
                                           const RunOptions& options);
+
+/// Keeps the calling thread on its current processor until destroyed. If the system does not allow this, the
+/// thread is not pinned.
+class PinnedThread {
+  public:
+    PinnedThread();
+    ~PinnedThread();
+    PinnedThread(const PinnedThread&) = delete;
+    PinnedThread& operator=(const PinnedThread&) = delete;
+
+  private:
+    struct Mask;
+    std::unique_ptr<Mask> before_;  ///< absent if the thread is not pinned
+};
 
 }  // namespace conelane::experiments

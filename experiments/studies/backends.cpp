@@ -8,7 +8,6 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/aslib.hpp"

@@ -1,4 +1,4 @@
-#include "experiments/options/help_formatter.hpp"
+#include "experiments/options/command_line.hpp"
 
 #include "tests/support/testing.hpp"
 
