@@ -42,6 +42,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 class CommandLines : public ProgramFixture, public testing::WithParamInterface<Section> {
   protected:
+    void SetUp() override {
+        ProgramFixture::SetUp();
+        ::setenv("PYTHONHOME", "nowhere", 1);  // pages would take most of the time here
+    }
     void make_file(const std::string& name, const std::string& text) const {
         std::filesystem::create_directories(path(name).parent_path());
         file_with(text.empty() ? "" : replaced(text.substr(1), "\\n", "\n") + "\n", name);
