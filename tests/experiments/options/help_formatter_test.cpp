@@ -1,5 +1,4 @@
 #include "experiments/options/command_line.hpp"
-
 #include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
