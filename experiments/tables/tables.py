@@ -24,6 +24,7 @@ from cells import InputError, read_json, table
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STORED = os.path.join(ROOT, "docs", "benchmarks")
 PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
+JUDGE = os.path.join(STORED, "course_judge.json")  # the record of a judge that is not in the project any more
 KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "reproduce": reproduce}
 BEAM_PICTURE = os.path.join(ROOT, "docs", "learned-costs.svg")
 
@@ -67,7 +68,8 @@ def all_tables(stored):
     for kind, module in KINDS.items():
         texts |= module.tables(stored[kind])
         runs |= stored[kind].get("runs", {})
-    return texts | parameter_sets.tables(ROOT) | {"runs": runs_table(runs)}
+    judge = read_json(JUDGE)
+    return texts | parameter_sets.tables(ROOT) | {"judge of twelve cones": held_out.judge_table(judge), "runs": runs_table(runs | judge["runs"])}
 
 
 def strangers(stored):

@@ -156,17 +156,6 @@ class Reproduce(unittest.TestCase):
         self.assertIn("the run 'b' is of commit d", found[0])
 
 
-    def test_families_of_the_judge_add_up_by_their_scenes(self):
-        def row(family, scenes, expected, attained, inside):
-            return {"family": family, "rate": 0.5, "scenes": scenes, "power": 1.0, "expected": expected, "attained": attained, "start": 0,
-                    "inside": inside, "ends": 1}
-        with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "course_judge.json"), "w", encoding="utf-8") as stream:
-                json.dump([row("a", 30, 0.9, 1.0, 0), row("b", 10, 0.5, 0.6, 3)], stream)
-            rows = held_out.judge_rows(folder)
-        self.assertEqual(rows[-1], {"family": "all", "rate": 0.5, "scenes": 40, "expected": 0.8, "attained": 0.9, "start": 0, "inside": 3, "ends": 2})
-
-
 class Solvers(unittest.TestCase):
     def test_a_quantile_is_one_of_the_values_as_in_the_program(self):
         times = [{"backend": "b", "nearest": 12, "scene": "s", "status": "optimal", "latency_ms": float(time)} for time in range(20, 0, -1)]
