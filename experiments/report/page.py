@@ -181,6 +181,7 @@ def render(results, published, tracks=()):
 <main><div class="intro">{_intro(results, data)}</div>
 {body}</main>
 <script type="application/json" id="marks">{_asset("marks.json")}</script>
-{"".join(f"<script>{_asset(name)}</script>" for name in ("tables.js", "drawing.js", "viewer.js", "race.js"))}
+<script>{_asset("tables.js")}</script>
+<script type="module">{_asset("drawing.mjs").replace("export ", "")}{"".join(map(_asset, ("frames.js", "viewer.js", "race.js")))}</script>
 </body></html>
 """

@@ -129,6 +129,12 @@ tests["what a file of the page imports is exported by the file that it names"] =
     }
     assert.ok(text.split("\n").length < 350, `${name} is long: split it by subject`);
   }
+  const importsOf = (name) => [...(textOf[name] ?? "").matchAll(/^import .* from "\.\/([^"]+)";$/gm)].map(([, from]) => from);
+  const visit = (name, path) => {
+    assert.ok(!path.includes(name), `files import each other in a circle: ${[...path, name].join(", ")}`);
+    for (const from of importsOf(name)) visit(from, [...path, name]);
+  };
+  for (const name of files) visit(name, []);
 };
 
 let failed = 0;
