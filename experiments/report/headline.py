@@ -42,7 +42,7 @@ def _recommended(results, samples):
                   f"{quantile(best.latency, 0.99):.2f}{_NBSP}ms.{tail}")
 
 
-def _sentence(results):
+def answer(results):
     """The method whose lanes are usable most often. If it does not keep the real-time budget, also the best that does;
     if it carries its last lane along, also the best of those that do not: false positives drawn at every pose
     reward memory more than a track would."""
@@ -223,11 +223,6 @@ def exactness(results):
     """Sentences on proofs: what was proven, checked, and how near the graph search comes to it."""
     sentences = f"{_agreement_sentences(results)}{_optimality_sentence(results)}{_checker_sentence(results)}"
     return f'<ul class="verdict">{sentences}</ul>' if sentences else ""
-
-
-def answer(results):
-    """The answer to what is compared, in a sentence or two."""
-    return _sentence(results)
 
 
 def html(results, data, conditions):

@@ -145,15 +145,6 @@ std::string parameter_keys() {
     return keys + "pairing, use_confidence, forbid_crossing, learned_costs";
 }
 
-double number(py::handle object, const std::string& key) {
-    const double value = PyFloat_AsDouble(object.ptr());
-    if (value == -1.0 && PyErr_Occurred() != nullptr) {
-        PyErr_Clear();
-        throw InvalidInput(key, "is not a number");
-    }
-    return value;
-}
-
 void set_parameter(RldParameters& parameters, const std::string& key, py::handle value) {
     for (const auto fields : {rld_parameter_fields(), rld_extra_fields()}) {
         const auto field = std::ranges::find(fields, key, &RldParameterField::key);
@@ -187,6 +178,15 @@ Numbers numbers(py::handle object, const char* key) {
     const py::array array = any_array(object, key);
     if (array.size() > 0 && !is_one_of(array.dtype().kind(), "fiu")) refuse_dtype(array, key, "real numbers");
     return Numbers(array);
+}
+
+double number(py::handle object, const std::string& key) {
+    const double value = PyFloat_AsDouble(object.ptr());
+    if (value == -1.0 && PyErr_Occurred() != nullptr) {
+        PyErr_Clear();
+        throw InvalidInput(key, "is not a number");
+    }
+    return value;
 }
 
 std::vector<Point> points(py::handle object, const char* key) {

@@ -26,6 +26,7 @@ using Indices = py::array_t<std::int64_t>;
 
 /// Floating-point or whole numbers, as double.
 [[nodiscard]] Numbers numbers(py::handle object, const char* key);
+[[nodiscard]] double number(py::handle object, const std::string& key);
 /// An (N, 2) array; an empty one may have any shape.
 [[nodiscard]] std::vector<Point> points(py::handle object, const char* key);
 /// (x, y, yaw)

@@ -4,10 +4,8 @@
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -31,8 +29,10 @@ std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) 
     return std::filesystem::path(text.cast<std::string>());
 }
 
-/// The options of a detector. `recipe` is nullptr for an unknown detector, which make_detector reports.
-DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given) {
+}  // namespace
+
+DetectorOptions detector_options(const std::string& name, const py::kwargs& given) {
+    const DetectorRecipe* const recipe = find_recipe(name);
     DetectorOptions options;
     for (const auto& [key_object, value] : given) {
         const std::string key = py::str(key_object);
@@ -50,7 +50,6 @@ DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given
                 "options", "there is no option '" + key + "', only nearest, parameters, pairing, weights");
         }
         if (recipe == nullptr || key == "nearest") continue;
-        const std::string name(recipe->name);
         if (key == "weights") {
             if (!recipe->takes_weights())
                 throw InvalidInput(key, "is of the detectors front and front-warm, '" + name + "' has none");
@@ -61,49 +60,36 @@ DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given
     return options;
 }
 
-}  // namespace
-
-DetectorOptions detector_options(const std::string& name, const py::kwargs& given) {
-    return options_of(find_recipe(name), given);
-}
-
 namespace {
 
 /// A detector that may be called from any thread: calls of one instance wait for each other.
 class DetectorObject {
   public:
     DetectorObject(const std::string& name, const py::kwargs& given) : name_(name) {
-        const DetectorRecipe* const recipe = find_recipe(name);
-        const DetectorOptions options = options_of(recipe, given);
+        const DetectorOptions options = detector_options(name, given);
         detector_ = make_detector(name, options);
+        const DetectorRecipe* const recipe = find_recipe(name);
         description_ = recipe->description;
         nearest_ = cone_set(*recipe, options).nearest;
     }
 
     [[nodiscard]] LaneObject detect(std::shared_ptr<const Scene> scene, std::optional<double> time_limit_ms) {
-        const double limit_ms = time_limit_ms.value_or(std::numeric_limits<double>::infinity());
-        if (std::isnan(limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
+        const DetectionLimits limits{.time_limit_ms = limit_of(time_limit_ms)};
+        if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
         LaneObject lane{{}, std::move(scene)};
-        lane.record.scene = lane.scene->id;
-        lane.record.detector = name_;
-        lane.record.nearest = nearest_;
-        const py::gil_scoped_release unlocked;  // before the mutex: its owner may need this lock to finish
-        {
-            const std::scoped_lock lock(mutex_);
-            const auto start = std::chrono::steady_clock::now();
-            lane.record.answer = detector_->detect(*lane.scene, {.time_limit_ms = limit_ms});
-            const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-            lane.record.latency_ms = took.count();
-        }
-        if (lane.record.answer.status == LaneStatus::error)
+        LaneRecord& record = lane.record;
+        record.scene = lane.scene->id;
+        record.detector = name_;
+        record.nearest = nearest_;
+        const auto detect = [&] { record.answer = detector_->detect(*lane.scene, limits); };
+        record.latency_ms = alone(mutex_, [&] { return timed_ms(detect); });
+        if (record.answer.status == LaneStatus::error)
             validate(*lane.scene);  // throws if the scene is invalid
         return lane;
     }
 
     void reset() {
-        const py::gil_scoped_release unlocked;
-        const std::scoped_lock lock(mutex_);
-        detector_->reset();
+        alone(mutex_, [this] { detector_->reset(); });
     }
 
     [[nodiscard]] const std::string& name() const { return name_; }
@@ -117,10 +103,28 @@ class DetectorObject {
     std::mutex mutex_;
 };
 
-}  // namespace
+LaneObject detect(DetectorObject& detector, const py::object& cones, const py::object& pose,
+                  const py::object& ids, const py::object& colors, const py::object& confidences,
+                  std::optional<double> time_limit_ms, const py::object& covariances) {
+    auto scene = std::make_shared<Scene>();
+    scene->cones = python::cones(cones, ids, colors, confidences, covariances);
+    scene->pose = python::pose(pose);
+    return detector.detect(std::move(scene), time_limit_ms);
+}
 
-void add_detector(py::module_& module) {
-    py::class_<DetectorObject>(module, "Detector", R"(Detector(name, **options)
+LaneObject detect_scene(DetectorObject& detector, const SceneObject& scene,
+                        std::optional<double> time_limit_ms) {
+    return detector.detect({scene, &scene->scene}, time_limit_ms);
+}
+
+py::dict methods() {
+    py::dict all;
+    for (const DetectorInfo& info : detectors())
+        all[py::str(std::string(info.name))] = std::string(info.description);
+    return all;
+}
+
+constexpr const char* kDetector = R"(Detector(name, **options)
 
 A lane detector.
 
@@ -160,22 +164,10 @@ Examples
 'found'
 >>> lane.left, lane.right
 (array([1, 3, 5]), array([0, 2, 4]))
-)")
-        .def(py::init<const std::string&, const py::kwargs&>(), py::arg("name"))
-        .def(
-            "detect",
-            [](DetectorObject& detector, const py::object& cones, const py::object& pose,
-               const py::object& ids, const py::object& colors, const py::object& confidences,
-               std::optional<double> time_limit_ms, const py::object& covariances) {
-                auto scene = std::make_shared<Scene>();
-                scene->cones = python::cones(cones, ids, colors, confidences, covariances);
-                scene->pose = python::pose(pose);
-                return detector.detect(std::move(scene), time_limit_ms);
-            },
-            py::arg("cones"), py::arg("pose"), py::arg("ids") = py::none(), py::arg("colors") = py::none(),
-            py::arg("confidences") = py::none(), py::arg("time_limit_ms") = 50.0, py::kw_only(),
-            py::arg("covariances") = py::none(),
-            R"(detect(cones, pose, ids=None, colors=None, confidences=None, time_limit_ms=50.0, *, covariances=None)
+)";
+
+constexpr const char* kDetect =
+    R"(detect(cones, pose, ids=None, colors=None, confidences=None, time_limit_ms=50.0, *, covariances=None)
 
 The lane among cones.
 
@@ -217,34 +209,18 @@ Examples
 Traceback (most recent call last):
     ...
 ValueError: cones[0].y: must be a finite number
-)")
-        .def(
-            "detect_scene",
-            [](DetectorObject& detector, const SceneObject& scene, std::optional<double> time_limit_ms) {
-                return detector.detect({scene, &scene->scene}, time_limit_ms);
-            },
-            py::arg("scene"), py::arg("time_limit_ms") = 50.0, R"(detect_scene(scene, time_limit_ms=50.0)
+)";
+
+constexpr const char* kDetectScene = R"(detect_scene(scene, time_limit_ms=50.0)
 
 The same for a `Scene`. The lane has the scene's id.
-)")
-        .def("reset", &DetectorObject::reset, R"(reset()
 
-Forgets earlier calls: for a new lap or another place.
-)")
-        .def_property_readonly("name", &DetectorObject::name, "str: as `methods` has it")
-        .def_property_readonly("meaning", &DetectorObject::description, "str: one line")
-        .def("__repr__",
-             [](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
+Returns
+-------
+Lane
+)";
 
-    module.def(
-        "methods",
-        [] {
-            py::dict all;
-            for (const DetectorInfo& info : detectors())
-                all[py::str(std::string(info.name))] = std::string(info.description);
-            return all;
-        },
-        R"(methods()
+constexpr const char* kMethods = R"(methods()
 
 The detectors of the library, by name, with their descriptions. The first one is for driving.
 
@@ -257,7 +233,22 @@ Examples
 >>> import conelane
 >>> "clc" in conelane.methods()
 True
-)");
+)";
+
+}  // namespace
+
+void add_detector(py::module_& module) {
+    Class<DetectorObject>(module, "Detector", kDetector)
+        .init([](const std::string& name, const py::kwargs& given) {
+            return std::make_unique<DetectorObject>(name, given);
+        })
+        .method(kDetect, detect)
+        .method(kDetectScene, detect_scene)
+        .method("reset()\n\nForgets earlier calls: for a new lap or another place.\n", &DetectorObject::reset)
+        .get("name", "str: as `methods` has it", &DetectorObject::name)
+        .get("meaning", "str: one line", &DetectorObject::description)
+        .repr([](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
+    add_function(module, kMethods, methods);
 }
 
 }  // namespace conelane::python

@@ -82,109 +82,43 @@ void write_lanes(const std::filesystem::path& file, const std::vector<const Lane
     conelane::write_lanes(file, records);
 }
 
-std::optional<double> objective(const LaneObject& lane) {
+/// A number of the detector's proof, if it has one.
+template <typename Value>
+std::optional<double> of_proof(const LaneObject& lane, Value value) {
     if (!lane.record.answer.optimality) return std::nullopt;
-    return lane.record.answer.optimality->objective;
+    return (*lane.record.answer.optimality).*value;
 }
 
-void add_answer(py::class_<LaneObject>& lane) {
-    lane.def_property_readonly(
-            "status", [](const LaneObject& l) { return to_string(l.record.answer.status); },
-            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before
-a lane that can be driven was found; "error": see `message`.)")
-        .def_property_readonly(
-            "found", [](const LaneObject& l) { return l.record.answer.status == LaneStatus::found; },
-            "bool: whether the status is \"found\"")
-        .def_property_readonly(
-            "message", [](const LaneObject& l) { return l.record.answer.message; },
-            "str: of an error, or of a lane that is stopped because it cannot be driven")
-        .def_property_readonly(
-            "stopped_by",
-            [](const LaneObject& l) -> std::optional<std::string_view> {
-                if (!l.record.answer.stopped_by) return std::nullopt;
-                return to_string(*l.record.answer.stopped_by);
-            },
-            R"(str or None: the limit that ended the search: "time", "iterations" or "memory")")
-        .def_property_readonly(
-            "confidence", [](const LaneObject& l) { return l.record.answer.confidence; },
-            "float or None: probability that the lane is usable; None if the detector has none")
-        .def_property_readonly(
-            "trusted_m", [](const LaneObject& l) { return l.record.answer.trusted_m; },
-            R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:
-with a `confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was
-found, or if a file does not have it: do not trust that lane.)")
-        .def_property_readonly(
-            "merged",
-            [](const LaneObject& l) {
-                py::dict merged;
-                for (const auto& [cone, into] : l.record.answer.merged) merged[py::int_(cone)] = into;
-                return merged;
-            },
-            R"(dict of int to int: ids of the cones that the detector left out, because each is within 0.12 m of another
-cone (front, front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)")
-        .def_property_readonly("objective", objective, "float or None: of a detector that states one")
-        .def_property_readonly(
-            "bound",
-            [](const LaneObject& l) -> std::optional<double> {
-                if (!l.record.answer.optimality) return std::nullopt;
-                return l.record.answer.optimality->bound;
-            },
-            "float or None: proven lower bound of the objective")
-        .def_property_readonly(
-            "latency_ms", [](const LaneObject& l) { return l.record.latency_ms; },
-            "float: wall clock of the search [ms]")
-        .def_property_readonly(
-            "method", [](const LaneObject& l) { return l.record.detector; }, "str: name of the detector")
-        .def_property_readonly(
-            "scene_id", [](const LaneObject& l) { return l.record.scene; },
-            "str: id of the scene that it answers; empty for arrays");
+py::dict merged(const LaneObject& lane) {
+    py::dict merged;
+    for (const auto& [cone, into] : lane.record.answer.merged) merged[py::int_(cone)] = into;
+    return merged;
 }
 
-void add_geometry(py::class_<LaneObject>& lane) {
-    lane.def_property_readonly(
-            "left", [](const LaneObject& l) { return boundary_indices(l, true); },
-            R"((L,) ndarray of int64: the cones of the left boundary from the car outward, as indices into `cones`; empty
-if no lane, or only the right boundary, was found.)")
-        .def_property_readonly(
-            "right", [](const LaneObject& l) { return boundary_indices(l, false); },
-            "(R,) ndarray of int64: the same for the right boundary")
-        .def_property_readonly(
-            "left_points", [](const LaneObject& l) { return array(boundary(l, true)); },
-            "(L, 2) ndarray of float64: the left boundary's positions [m]")
-        .def_property_readonly(
-            "right_points", [](const LaneObject& l) { return array(boundary(l, false)); },
-            "(R, 2) ndarray of float64: the right boundary's positions [m]")
-        .def_property_readonly(
-            "closed", [](const LaneObject& l) { return l.record.answer.lane.closed; },
-            "bool: a whole circuit, in which each boundary returns from its last cone to its first")
-        .def_property_readonly(
-            "cones", [](const LaneObject& l) { return positions(l.scene->cones); },
-            "(N, 2) ndarray of float64: all cones that the detector was given [m]")
-        .def_property_readonly(
-            "ids", [](const LaneObject& l) { return python::ids(l.scene->cones); },
-            "(N,) ndarray of int64: ids of those cones")
-        .def_property_readonly(
-            "colors", [](const LaneObject& l) { return python::colors(l.scene->cones); },
-            "(N,) ndarray of uint8: codes, see `Color`")
-        .def_property_readonly(
-            "pose", [](const LaneObject& l) { return array(l.scene->pose); },
-            "(3,) ndarray of float64: x, y [m] and yaw [rad] of the car")
-        .def(
-            "centre_line",
-            [](const LaneObject& l, double step_m, double smoothing_m, double usual_width_m) {
-                try {
-                    return array(drivable(
-                        l, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = usual_width_m}));
-                } catch (const InvalidInput& error) {
-                    if (error.key() != "default_width_m") throw;
-                    throw InvalidInput("usual_width_m",
-                                       std::string(error.what()).substr(error.key().size() + 2));
-                }
-            },
-            py::arg("step_m") = DrivableOptions{}.step_m, py::kw_only(),
-            py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
-            py::arg("usual_width_m") = DrivableOptions{}.default_width_m,
-            R"(centre_line(step_m=0.5, *, smoothing_m=1.75, usual_width_m=3.5)
+py::array_t<double> centre_line(const LaneObject& lane, double step_m, double smoothing_m,
+                                double usual_width_m) {
+    try {
+        return array(
+            drivable(lane, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = usual_width_m}));
+    } catch (const InvalidInput& error) {
+        if (error.key() != "default_width_m") throw;
+        throw InvalidInput("usual_width_m", std::string(error.what()).substr(error.key().size() + 2));
+    }
+}
+
+std::string text_of(const LaneObject& lane) {
+    const LaneRecord& record = lane.record;
+    return fmt::format("<conelane.Lane {}: {} left, {} right of {} cones>", to_string(record.answer.status),
+                       record.points ? record.points->left.size() : record.answer.lane.left.size(),
+                       record.points ? record.points->right.size() : record.answer.lane.right.size(),
+                       lane.scene->cones.size());
+}
+
+static_assert(DrivableOptions{}.step_m == 0.5 && DrivableOptions{}.smoothing_m == 1.75 &&
+                  DrivableOptions{}.max_gap_m == 5.5 && DrivableOptions{}.default_width_m == 3.5,
+              "the docstrings have the defaults");
+
+constexpr const char* kCentreLine = R"(centre_line(step_m=0.5, *, smoothing_m=1.75, usual_width_m=3.5)
 
 The middle of the lane from the car on.
 
@@ -213,18 +147,10 @@ Examples
 (5, 7)
 >>> line[:, 0].tolist()
 [0.0, 2.0, 4.0, 6.0, 8.0]
-)")
-        .def(
-            "drivable",
-            [](const LaneObject& l, double step_m, double smoothing_m, double max_gap_m,
-               double default_width_m) {
-                return drivable(l, {step_m, smoothing_m, max_gap_m, default_width_m});
-            },
-            py::arg("step_m") = DrivableOptions{}.step_m, py::kw_only(),
-            py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
-            py::arg("max_gap_m") = DrivableOptions{}.max_gap_m,
-            py::arg("default_width_m") = DrivableOptions{}.default_width_m,
-            R"(drivable(step_m=0.5, *, smoothing_m=1.75, max_gap_m=5.5, default_width_m=3.5)
+)";
+
+constexpr const char* kDrivable =
+    R"(drivable(step_m=0.5, *, smoothing_m=1.75, max_gap_m=5.5, default_width_m=3.5)
 
 The centre line with the gaps that it bridges and the boundary that was inferred.
 
@@ -240,13 +166,9 @@ default_width_m : float
 Returns
 -------
 DrivableLane
-)")
-        .def(
-            "plot",
-            [](const py::object& self, const py::object& ax) {
-                return py::module_::import("conelane._plot").attr("plot_lane")(self, ax);
-            },
-            py::arg("ax") = py::none(), R"(plot(ax=None)
+)";
+
+constexpr const char* kPlot = R"(plot(ax=None)
 
 Draws cones, both boundaries, the centre line and the car. Needs matplotlib.
 
@@ -258,52 +180,9 @@ ax : matplotlib.axes.Axes, optional
 Returns
 -------
 matplotlib.axes.Axes
-)")
-        .def("__repr__", [](const LaneObject& l) {
-            const LaneRecord& record = l.record;
-            return fmt::format("<conelane.Lane {}: {} left, {} right of {} cones>",
-                               to_string(record.answer.status),
-                               record.points ? record.points->left.size() : record.answer.lane.left.size(),
-                               record.points ? record.points->right.size() : record.answer.lane.right.size(),
-                               l.scene->cones.size());
-        });
-}
+)";
 
-void add_drivable_lane(py::module_& module) {
-    py::class_<DrivableLane>(module, "DrivableLane",
-                             R"(A lane ready to be driven. Every attribute is a copy.)")
-        .def_property_readonly(
-            "centre_line", [](const DrivableLane& d) { return array(d); },
-            "(N, 7) ndarray of float64: columns as of `Lane.centre_line`")
-        .def_readonly("closed", &DrivableLane::closed, "bool: the last row is one step before the first one")
-        .def_readonly("length_m", &DrivableLane::length_m, "float: of the centre line [m]")
-        .def_readonly("trusted_m", &DrivableLane::trusted_m,
-                      "float or None: arc length up to which the detector trusts the lane [m]")
-        .def_property_readonly(
-            "bridged",
-            [](const DrivableLane& d) {
-                py::list gaps;
-                for (const BridgedGap& gap : d.bridged)
-                    gaps.append(py::make_tuple(gap.on_left ? "left" : "right", gap.from_s_m, gap.to_s_m));
-                return gaps;
-            },
-            R"(list of (str, float, float): gaps between successive cones longer than `max_gap_m`, in which a cone is
-missing or was not seen: "left" or "right", and the arc lengths beside the two cones [m])")
-        .def_readonly("left_inferred", &DrivableLane::left_inferred,
-                      "bool: no cone of the left boundary is known, it is assumed at `default_width_m`")
-        .def_readonly("right_inferred", &DrivableLane::right_inferred,
-                      "bool: the same for the right boundary");
-}
-
-}  // namespace
-
-void add_lanes(py::module_& module) {
-    add_drivable_lane(module);
-    py::class_<LaneObject> lane(module, "Lane", R"(The answer of a detector. Every attribute is a copy.)");
-    add_geometry(lane);
-    add_answer(lane);
-
-    module.def("read_lanes", read_lanes, py::arg("file"), py::arg("scenes"), R"(read_lanes(file, scenes)
+constexpr const char* kReadLanes = R"(read_lanes(file, scenes)
 
 Lanes of a `*.lanes.jsonl` file.
 
@@ -321,8 +200,9 @@ Raises
 ------
 ValueError
     Naming file, line and key.
-)");
-    module.def("write_lanes", write_lanes, py::arg("file"), py::arg("lanes"), R"(write_lanes(file, lanes)
+)";
+
+constexpr const char* kWriteLanes = R"(write_lanes(file, lanes)
 
 Writes a `*.lanes.jsonl` file. If that fails, an old file stays unchanged.
 
@@ -343,7 +223,135 @@ Examples
 ...     again = conelane.read_lanes(file, scenes)
 >>> [a.left.tolist() for a in again] == [a.left.tolist() for a in lanes]
 True
-)");
+)";
+
+/// What a lane and the answer in a plan say; `steps` lead to the detector's answer.
+template <typename Object, typename... Steps>
+void add_answer(Class<Object>& object, Steps... steps) {
+    object
+        .get(
+            "status",
+            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before
+a lane that can be driven was found; "error": see `message`.)",
+            steps..., &LaneAnswer::status, kName)
+        .get("found", "bool: whether the status is \"found\"", steps..., &LaneAnswer::status,
+             [](LaneStatus status) { return status == LaneStatus::found; })
+        .get("message", "str: of an error, or of a lane that is stopped because it cannot be driven",
+             steps..., &LaneAnswer::message)
+        .get("stopped_by",
+             R"(str or None: the limit that ended the search: "time", "iterations" or "memory")", steps...,
+             &LaneAnswer::stopped_by, kName)
+        .get("confidence",
+             "float or None: probability that the lane is usable; None if the detector has none", steps...,
+             &LaneAnswer::confidence)
+        .get(
+            "trusted_m",
+            R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:
+with a `confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was
+found, or if a file does not have it: do not trust that lane.)",
+            steps..., &LaneAnswer::trusted_m);
+}
+
+void add_boundaries(Class<LaneObject>& lane) {
+    lane.get(
+            "left",
+            R"((L,) ndarray of int64: the cones of the left boundary from the car outward, as indices into `cones`; empty
+if no lane, or only the right boundary, was found.)",
+            [](const LaneObject& l) { return boundary_indices(l, true); })
+        .get("right", "(R,) ndarray of int64: the same for the right boundary",
+             [](const LaneObject& l) { return boundary_indices(l, false); })
+        .get("left_points", "(L, 2) ndarray of float64: the left boundary's positions [m]",
+             [](const LaneObject& l) { return array(boundary(l, true)); })
+        .get("right_points", "(R, 2) ndarray of float64: the right boundary's positions [m]",
+             [](const LaneObject& l) { return array(boundary(l, false)); })
+        .get("closed",
+             "bool: a whole circuit, in which each boundary returns from its last cone to its first",
+             [](const LaneObject& l) { return l.record.answer.lane.closed; })
+        .method(kCentreLine, centre_line)
+        .method(kDrivable,
+                [](const LaneObject& l, double step_m, double smoothing_m, double max_gap_m,
+                   double default_width_m) {
+                    return drivable(l, {step_m, smoothing_m, max_gap_m, default_width_m});
+                })
+        .method(kPlot,
+                [](const py::object& self, const py::object& ax) {
+                    return py::module_::import("conelane._plot").attr("plot_lane")(self, ax);
+                })
+        .repr(text_of);
+}
+
+void add_record(Class<LaneObject>& lane) {
+    lane.cones(&LaneObject::scene, &Scene::cones)
+        .get("pose", "(3,) ndarray of float64: x, y [m] and yaw [rad] of the car", &LaneObject::scene,
+             &Scene::pose, kArray)
+        .get(
+            "merged",
+            R"(dict of int to int: ids of the cones that the detector left out, because each is within 0.12 m of another
+cone (front, front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)",
+            merged)
+        .get("objective", "float or None: of a detector that states one",
+             [](const LaneObject& l) { return of_proof(l, &Optimality::objective); })
+        .get("bound", "float or None: proven lower bound of the objective",
+             [](const LaneObject& l) { return of_proof(l, &Optimality::bound); })
+        .get("latency_ms", "float: wall clock of the search [ms]", &LaneObject::record,
+             &LaneRecord::latency_ms)
+        .get("method", "str: name of the detector", &LaneObject::record, &LaneRecord::detector)
+        .get("scene_id", "str: id of the scene that it answers; empty for arrays", &LaneObject::record,
+             &LaneRecord::scene);
+}
+
+void add_answer_of_plan(py::module_& module) {
+    Class<LaneAnswer> answer(module, "Answer", "The detector's answer to a frame.");
+    add_answer(answer);
+    answer
+        .get(
+            "left_ids",
+            R"((L,) ndarray of int64: cones of the left boundary from the car outward, by the ids of the frames; a
+cone without an id has a negative id of the planner's own)",
+            &LaneAnswer::lane, &Lane::left, kArray)
+        .get("right_ids", "(R,) ndarray of int64: the same for the right boundary", &LaneAnswer::lane,
+             &Lane::right, kArray)
+        .repr([](const LaneAnswer& a) {
+            return fmt::format("<conelane.Answer {}: {} left, {} right>", to_string(a.status),
+                               a.lane.left.size(), a.lane.right.size());
+        });
+}
+
+void add_drivable_lane(py::module_& module) {
+    Class<DrivableLane>(module, "DrivableLane", "A lane ready to be driven. Every attribute is a copy.")
+        .get("centre_line", "(N, 7) ndarray of float64: columns as of `Lane.centre_line`",
+             [](const DrivableLane& d) { return array(d); })
+        .get("closed", "bool: the last row is one step before the first one", &DrivableLane::closed)
+        .get("length_m", "float: of the centre line [m]", &DrivableLane::length_m)
+        .get("trusted_m", "float or None: arc length up to which the detector trusts the lane [m]",
+             &DrivableLane::trusted_m)
+        .get(
+            "bridged",
+            R"(list of (str, float, float): gaps between successive cones longer than `max_gap_m`, in which a cone is
+missing or was not seen: "left" or "right", and the arc lengths beside the two cones [m])",
+            [](const DrivableLane& d) {
+                py::list gaps;
+                for (const BridgedGap& gap : d.bridged)
+                    gaps.append(py::make_tuple(gap.on_left ? "left" : "right", gap.from_s_m, gap.to_s_m));
+                return gaps;
+            })
+        .get("left_inferred",
+             "bool: no cone of the left boundary is known, it is assumed at `default_width_m`",
+             &DrivableLane::left_inferred)
+        .get("right_inferred", "bool: the same for the right boundary", &DrivableLane::right_inferred);
+}
+
+}  // namespace
+
+void add_lanes(py::module_& module) {
+    add_drivable_lane(module);
+    Class<LaneObject> lane(module, "Lane", "The answer of a detector. Every attribute is a copy.");
+    add_boundaries(lane);
+    add_answer(lane, &LaneObject::record, &LaneRecord::answer);
+    add_record(lane);
+    add_answer_of_plan(module);
+    add_function(module, kReadLanes, read_lanes);
+    add_function(module, kWriteLanes, write_lanes);
 }
 
 }  // namespace conelane::python

@@ -3,9 +3,29 @@
 #include "evaluation/files/input_error.hpp"
 #include "python/bindings/bindings.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <string>
+#include <string_view>
+
+#include <pybind11/eval.h>
+
+namespace conelane::python {
+
+Signature::Signature(std::string_view doc) : name(doc.substr(0, doc.find('('))) {
+    std::string_view rest = doc.substr(name.size() + 1, doc.find('\n') - name.size() - 2);
+    while (!rest.empty() && !rest.starts_with("**")) {
+        const std::string_view argument = rest.substr(0, rest.find(", "));
+        rest.remove_prefix(std::min(rest.size(), argument.size() + 2));
+        const std::size_t equals = std::min(argument.find('='), argument.size());
+        arguments.push_back({std::string(argument.substr(0, equals)), {}});
+        if (equals < argument.size())
+            arguments.back().value = py::eval(std::string(argument.substr(equals + 1)));
+    }
+}
+
+}  // namespace conelane::python
 
 namespace py = pybind11;
 

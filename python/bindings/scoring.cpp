@@ -61,43 +61,7 @@ std::optional<double> heading_error_rad(const SceneScore& score) {
     return score.centre_line_error->heading_rad;
 }
 
-}  // namespace
-
-void add_scoring(py::module_& module) {
-    py::class_<SceneScore>(module, "Score", "What one lane is worth, by the measures of both papers.")
-        .def_property_readonly("usable", &SceneScore::usable,
-                               "bool or None: whether a car can drive by the lane; None without boundaries")
-        .def_property_readonly(
-            "category", [](const SceneScore& s) { return to_string(s.category); },
-            R"(str: "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short" or "near_ground_truth")")
-        .def_property_readonly("success", &SceneScore::success,
-                               "bool: any category but none and diverging_below_20")
-        .def_property_readonly(
-            "accurate", accurate,
-            "bool or None: passes the four checks of the RLD paper; None if they do not apply")
-        .def_property_readonly(
-            "error", [](const SceneScore& s) { return s.error; }, "bool: the method failed")
-        .def_property_readonly(
-            "iou", [](const SceneScore& s) { return s.iou; },
-            "float or None: intersection over union with the true lane, in [0, 1]")
-        .def_property_readonly(
-            "lane_length_m", [](const SceneScore& s) { return s.lane_length_m; }, "float [m]")
-        .def_property_readonly(
-            "ground_truth_length_m", [](const SceneScore& s) { return s.ground_truth_length_m; }, "float [m]")
-        .def_property_readonly(
-            "divergence_distance_m", [](const SceneScore& s) { return s.divergence_distance_m; },
-            "float or None: distance at which the lane leaves the course [m]; None if it does not")
-        .def_property_readonly("lateral_error_m", lateral_error_m,
-                               "(K,) ndarray of float32 or None: lateral error of the centre line every 0.5 "
-                               "m [m]; for usable lanes")
-        .def_property_readonly(
-            "heading_error_rad", heading_error_rad,
-            "float or None: heading error of the centre line 10 m ahead [rad]; for usable lanes")
-        .def("__repr__",
-             [](const SceneScore& s) { return fmt::format("<conelane.Score {}>", to_string(s.category)); });
-
-    module.def("score", score, py::arg("scene"), py::arg("lane"), py::arg("boundaries") = py::none(),
-               R"(score(scene, lane, boundaries=None)
+constexpr const char* kScore = R"(score(scene, lane, boundaries=None)
 
 Compares a lane with the true one. The measures are defined in docs/measures.md.
 
@@ -128,7 +92,38 @@ Examples
 >>> result = conelane.score(scene, conelane.Detector("front").detect_scene(scene), track.boundaries)
 >>> result.usable, result.category
 (True, 'ground_truth')
-)");
+)";
+
+}  // namespace
+
+void add_scoring(py::module_& module) {
+    Class<SceneScore>(module, "Score", "What one lane is worth, by the measures of both papers.")
+        .get("usable", "bool or None: whether a car can drive by the lane; None without boundaries",
+             &SceneScore::usable)
+        .get(
+            "category",
+            R"(str: "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short" or "near_ground_truth")",
+            &SceneScore::category, kName)
+        .get("success", "bool: any category but none and diverging_below_20", &SceneScore::success)
+        .get("accurate", "bool or None: passes the four checks of the RLD paper; None if they do not apply",
+             accurate)
+        .get("error", "bool: the method failed", &SceneScore::error)
+        .get("iou", "float or None: intersection over union with the true lane, in [0, 1]", &SceneScore::iou)
+        .get("lane_length_m", "float: of the lane [m]", &SceneScore::lane_length_m)
+        .get("ground_truth_length_m", "float: of the true lane [m]", &SceneScore::ground_truth_length_m)
+        .get("divergence_distance_m",
+             "float or None: distance at which the lane leaves the course [m]; None if it does not",
+             &SceneScore::divergence_distance_m)
+        .get("lateral_error_m",
+             "(K,) ndarray of float32 or None: lateral error of the centre line every 0.5 m [m]; for usable "
+             "lanes",
+             lateral_error_m)
+        .get("heading_error_rad",
+             "float or None: heading error of the centre line 10 m ahead [rad]; for usable lanes",
+             heading_error_rad)
+        .repr([](const SceneScore& s) { return fmt::format("<conelane.Score {}>", to_string(s.category)); });
+
+    add_function(module, kScore, score);
 }
 
 }  // namespace conelane::python

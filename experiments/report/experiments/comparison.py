@@ -63,7 +63,7 @@ def quality(results, published):
     columns = keys(results) + [
         column(title, percent, key, interval=lambda row, name=name: share_and_interval(part(results, row), name)[1])
         for name, key, title in _QUALITY] + [column("solved %", percent, "solved_share"), column("complete %", percent, "complete_share")]
-    return group(figures, method_key(results, results.samples)) + table(
+    return group(figures, method_key(results, results.samples, "quality")) + table(
         "quality", columns, results.rows, attributes=attributes,
         note="Small: 95 % interval. Solved: within 0.4 s proven optimal, or proven to have no lane. Complete: the enumeration came to "
              f"its end.{note_on_training(results)}")
@@ -143,7 +143,7 @@ def calibration(results, published):
         column(title, percent, lambda row, key=key: row["calibration"].get(key), digits=2) for key, title in (
             ("error", "confidence error %"), ("sure_share", "sure %"), ("usable_where_sure_share", "usable where sure %"),
             ("trusted_share", "trusted %"), ("right_where_trusted_share", "right where trusted %"))]
-    return group(figures, method_key(results, [sample for sample in results.samples if sample.method in methods])) + of_bins + table(
+    return group(figures, method_key(results, [sample for sample in results.samples if sample.method in methods], "calibration")) + of_bins + table(
         "calibration-table", columns, shown.rows, attributes=attributes)
 
 
@@ -184,7 +184,7 @@ def latency(results, published):
               f"answers. {counts_of_points(under, under.samples)}{alone}", latency_figure(under), "Latency by false-positive rate"),
         drawn("latency", "A tick (the maximum) right of the line: at least one answer was too late for real time. Boxes: quartiles and "
               f"median; whiskers to the 1st and 99th percentile.{alone}", boxes, "Latency over all rates and ranges")
-    ], method_key(results, under.samples)) + table(
+    ], method_key(results, under.samples, "latencies")) + table(
         "latencies", columns, results.rows, attributes=attributes,
         note=f"Geometric mean: shifted by 1 ms. Small: 95 % interval, tracks resampled.{note_on_limit(results)}")
 

@@ -113,7 +113,7 @@ def paired_latency(results, published):
         column("scenes of both", count, lambda row: row["ratio"][2])], rows, note="Small: 95 % interval.")
 
 
-def profile_figure(solves, style_of, is_solved):
+def profile_figure(solves, style_of, is_solved, label="label"):
     """Of samples, or solves of backends, on the scenes that all have; also the number of these. None where there are none."""
     scenes = sorted(set.intersection(*(set(one.scene) for one in solves)))
     if not scenes:
@@ -123,7 +123,7 @@ def profile_figure(solves, style_of, is_solved):
     finite = ratios[np.isfinite(ratios)]
     most = max(2.0, finite.max() if len(finite) else 2.0)
     places = np.geomspace(1.0, most, 200)
-    curves = [Curve(one.label, np.column_stack([places, 100 * np.searchsorted(ratios[:, i], places, side="right") / len(scenes)]),
+    curves = [Curve(getattr(one, label), np.column_stack([places, 100 * np.searchsorted(ratios[:, i], places, side="right") / len(scenes)]),
                     style_of(i, one), "steps") for i, one in enumerate(solves)]
     figure, axes = chart(curves, "time / fastest method's time on the same scene", "scenes solved [%]", log="x", ylim=(-2, 103))
     axes.set_xticks([tick for tick in ((1, 2, 5, 10, 20, 50, 100) if most <= 200 else 10.0 ** np.arange(7)) if tick <= most])
