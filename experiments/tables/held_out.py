@@ -159,29 +159,21 @@ def lane_table(first, rows):
                  [[label] + [text(condition, rate) for condition in CONDITIONS for rate in RATES] for label, text in rows])
 
 
-def quality_rows(figures, labels, distance):
-    return [(label, lambda condition, rate, method=method: both(figures.row(None, method, condition, rate, distance))) for method, label in labels]
+def methods_table(figures, title, names, cell):
+    """A row for each method that has figures; `cell` is of method, condition and rate."""
+    return lane_table(title, [(label, lambda condition, rate, method=method: cell(method, condition, rate)) for method, label in figures.there(names)])
 
 
 def usable_table(figures):
-    return lane_table("usable, %", [
-        (label, lambda condition, rate, method=method: percent(figures.row(None, method, condition, rate, 30.0)["usable"]))
-        for method, label in figures.there(README_METHODS)])
+    return methods_table(figures, "usable, %", README_METHODS, lambda *of: percent(figures.row(None, *of, 30.0)["usable"]))
 
 
 def quality_table(figures, distance):
-    return lane_table("usable / IoU, %", quality_rows(figures, figures.there(METHODS), distance))
+    return methods_table(figures, "usable / IoU, %", METHODS, lambda *of: both(figures.row(None, *of, distance)))
 
 
 def designed_table(figures):
-    return lane_table("usable / IoU, %", [
-        (label, lambda condition, rate, method=method: both(figures.part("designed", None, method, condition, rate, {30.0})))
-        for method, label in figures.there(METHODS)])
-
-
-def peer_table(figures):
-    return lane_table("usable / IoU, %", quality_rows(figures, figures.there(
-        {"ft-fsd-path-planning": "ft-fsd-path-planning, sorting of cones", "front": "`front`"}), 30.0))
+    return methods_table(figures, "usable / IoU, %", METHODS, lambda *of: both(figures.part("designed", None, *of, {30.0})))
 
 
 def ordinary_table(figures):

@@ -15,9 +15,8 @@ export function changed(what = "scene") {
   requestAnimationFrame(frame);
 }
 
-function frame(now) {
+function frame() {
   isFrameAsked = false;
-  tell("frame", now);
   if (!state.world) return;
   if (isLookDue) {
     isLookDue = false;

@@ -8,7 +8,6 @@ import { select } from "./changes.mjs";
 import { makeMethods, turn } from "./method_cards.mjs";
 import { LIMITS_MS, tellSliders } from "./sight_controls.mjs";
 import { chooseCourse, FIRST_COURSE, makeCourses, openFiles, openLink } from "./worlds.mjs";
-import { measure } from "./frame_rate.mjs";
 import {} from "./playback.mjs";
 import {} from "./pointer.mjs";
 import {} from "./keys.mjs";
@@ -66,7 +65,7 @@ async function begin() {
 
 /** For tests and the console. */
 globalThis.playground = {
-  state, view, measure, whenSettled, select, turn, openFiles, save,
+  state, view, whenSettled, select, turn, openFiles, save,
   ask: (task, given) => clients.first.ask(task, given),
   place: (id) => { const cone = state.seen.find((one) => one.id === id); return cone && view.at([cone.x, cone.y]); },
 };

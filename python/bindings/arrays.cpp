@@ -1,9 +1,8 @@
-#include "python/bindings/arrays.hpp"
-
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "evaluation/formats/cone_json.hpp"
+#include "python/bindings/bindings.hpp"
 
 #include <algorithm>
 #include <array>

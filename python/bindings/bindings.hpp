@@ -1,21 +1,25 @@
 #pragma once
 
 #include "conelane/detectors.hpp"
+#include "conelane/drivable_lane.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/scene.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-#include "python/bindings/arrays.hpp"
 
-#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 /// The module conelane._core. Each function adds its part. A docstring begins with the Python signature, from
@@ -24,6 +28,47 @@
 namespace conelane::python {
 
 namespace py = pybind11;
+
+// Conversions from and to NumPy. An invalid array is an InvalidInput that names the argument; Python gets it
+// as ValueError.
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Indices = py::array_t<std::int64_t>;
+
+/// Floating-point or whole numbers, as double.
+[[nodiscard]] Numbers numbers(py::handle object, const char* key);
+[[nodiscard]] double number(py::handle object, const std::string& key);
+/// An (N, 2) array; an empty one may have any shape.
+[[nodiscard]] std::vector<Point> points(py::handle object, const char* key);
+/// (x, y, yaw)
+[[nodiscard]] Pose pose(py::handle object);
+/// An (N, 2) array and, unless they are None, N ids, colors, confidences and covariances. Without ids a cone
+/// has its index.
+[[nodiscard]] std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors,
+                                      py::handle confidences, py::handle covariances);
+/// Ids of the cones that an array of indices names.
+[[nodiscard]] std::vector<ConeId> ids_at(py::handle indices, std::span<const Cone> cones, const char* key);
+[[nodiscard]] std::size_t positive_count(py::handle object, const char* key);
+/// None, the name of a parameter set, or a dict of the values that differ from the defaults.
+[[nodiscard]] std::optional<RldParameters> rld_parameters(py::handle object);
+[[nodiscard]] Pairing pairing_of(std::string_view name);
+
+[[nodiscard]] py::array_t<double> array(std::span<const Point> points);
+[[nodiscard]] py::array_t<double> array(const Pose& pose);
+[[nodiscard]] Indices array(std::span<const std::int64_t> values);
+/// (N, 7): s, x, y, heading, curvature, width to the left and to the right.
+[[nodiscard]] py::array_t<double> array(const DrivableLane& lane);
+[[nodiscard]] py::array_t<double> positions(std::span<const Cone> cones);
+[[nodiscard]] Indices ids(std::span<const Cone> cones);
+[[nodiscard]] py::array_t<std::uint8_t> colors(std::span<const Cone> cones);
+/// (N, 5): unknown, blue, yellow, orange, big orange.
+[[nodiscard]] py::array_t<double> color_probabilities(std::span<const Cone> cones);
+[[nodiscard]] py::array_t<double> confidences(std::span<const Cone> cones);
+/// (N, 2, 2), 0 for a cone without one; nothing where no cone has one.
+[[nodiscard]] std::optional<py::array_t<double>> covariances(std::span<const Cone> cones);
+/// Positions of the cones with these ids in the list. Throws InvalidInput naming `key` for an unknown id.
+[[nodiscard]] std::vector<std::int64_t> indices_of(std::span<const ConeId> ids, std::span<const Cone> cones,
+                                                   std::string_view key);
 
 /// A scene as Python holds it: immutable, so lanes may refer to it.
 using SceneObject = std::shared_ptr<const AnnotatedScene>;
@@ -119,33 +164,10 @@ inline constexpr auto kArray = [](const auto& value) { return array(value); };
     return time_limit_ms.value_or(std::numeric_limits<double>::infinity());
 }
 
-/// Calls of one object from several threads wait for each other; the interpreter is free meanwhile. The lock
-/// of the interpreter is released first: the owner of the mutex may need it to finish.
-template <typename Work>
-auto alone(std::mutex& mutex, const Work& work) {
-    const py::gil_scoped_release unlocked;
-    const std::scoped_lock lock(mutex);
-    return work();
-}
-
-/// How long the work takes [ms].
-template <typename Work>
-double timed_ms(const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// The options that Python gives a detector of that name. Throws InvalidInput if the detector does not use an
-/// option. make_detector reports an unknown name.
-[[nodiscard]] DetectorOptions detector_options(const std::string& name, const py::kwargs& given);
-
 void add_scenes(py::module_& module);
 void add_lanes(py::module_& module);
 void add_detector(py::module_& module);
-void add_planner(py::module_& module);
 void add_rld(py::module_& module);
-void add_scoring(py::module_& module);
 
 }  // namespace conelane::python
 

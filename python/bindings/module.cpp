@@ -58,7 +58,5 @@ PYBIND11_MODULE(_core, module) {
     conelane::python::add_scenes(module);
     conelane::python::add_lanes(module);
     conelane::python::add_detector(module);
-    conelane::python::add_planner(module);
     conelane::python::add_rld(module);
-    conelane::python::add_scoring(module);
 }

@@ -2,7 +2,6 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
-#include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>

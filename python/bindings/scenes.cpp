@@ -2,7 +2,6 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/world/scene_generation.hpp"
-#include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>
