@@ -4,10 +4,12 @@ import json
 import pkgutil
 from html import escape
 
-from . import experiments, filters, gallery, headline, provenance
+from . import experiments, gallery, headline, provenance
 from .experiment import blocks
 from .load import CATEGORIES
+from .methods import whole
 from .scenes import read_scenes
+from .summaries import percent_label
 from .theme import METHOD_COLORS
 
 _VIEWER = """
@@ -94,6 +96,30 @@ def _one_condition(results):
             "do.</p>")
 
 
+def _explained(results, conditions):
+    """What the conditions are, beside the choice of one."""
+    told = [f"<b>{escape(name)}</b>: {escape(whole(conditions, name))}." for name in results.conditions
+            if whole(conditions, name)]
+    return f'<p class="note conditions">{" ".join(told)}</p>' if told else ""
+
+
+def _filters(results, conditions):
+    """The choices above the comparison. They hide rows of the tables, curves of the charts, and charts and pictures of other conditions."""
+    def choice(key, title, values, show):
+        if len(values) < 2:
+            return ""
+        options = "".join(f'<option value="{escape(str(value))}">{escape(show(value))}</option>' for value in values)
+        return f'<label>{title} <select data-filter="{key}"><option value="">all</option>{options}</select></label>'
+
+    everywhere = [choice("condition", "Condition", results.conditions, lambda name: name or "none named"),
+                  choice("method", "Method", [sample.label for sample in results.samples], str)]
+    in_tables = [choice("rate", "False positives", results.rates, lambda rate: f"{percent_label(rate)} %"),
+                 choice("range", "Range", results.ranges, lambda value: f"{value:g} m")]
+    groups = [("Show in tables, charts and pictures", everywhere), ("in tables", in_tables)]
+    return '<div class="controls" id="filters">' + "".join(
+        f"<span>{words}:</span>{''.join(choices)}" for words, choices in groups if any(choices)) + "</div>" + _explained(results, conditions)
+
+
 def _sections(results, published, data):
     """(id, short title, title, content) of each; those of which the results hold nothing are left out. Without a comparison there are
     studies of solvers alone."""
@@ -112,7 +138,7 @@ def _sections(results, published, data):
         main, note = results.under(results.main_condition), _one_condition(results)
         sections = [
             ("verdict", "Headline", "The methods, best first", headline.html(results, data, conditions)),
-            ("comparison", "Comparison", "Comparison", filters.html(results, conditions) + shown(experiments.COMPARISON)
+            ("comparison", "Comparison", "Comparison", _filters(results, conditions) + shown(experiments.COMPARISON)
              + headline.by_rate(results, conditions)),
             ("race", "Race", "Races driven with the answers", shown(experiments.RACE)),
             ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),

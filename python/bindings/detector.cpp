@@ -142,39 +142,24 @@ py::dict methods() {
     return all;
 }
 
-constexpr const char* kDetector = R"(Detector(name, **options)
+constexpr const char* kDetector = R"(Detector(name: str, **options)
 
 A lane detector.
 
-Parameters
-----------
-name : str
-    One of `methods()`.
-nearest : int, optional
-    Number of cones that it uses: the nearest ones ahead of the car.
-parameters : str or dict, optional
-    Of the detectors `rld-...`: the name of a parameter set, or a dict of the values that differ from the
+name: One of `methods()`.
+nearest: Number of cones that it uses: the nearest ones ahead of the car.
+parameters: Of the detectors `rld-...`: the name of a parameter set, or a dict of the values that differ from the
     defaults; see `rld_parameters`.
-pairing : str, optional
-    Of the detectors `rld-...`: "near_far" or "paper".
-weights : str, os.PathLike or bytes, optional
-    Of the detectors `front` and `front-warm`: weights of your own instead of the shipped ones. The path of a file
-    that ``conelane train front --out FILE`` wrote, or its content as bytes.
-
-Raises
-------
-ValueError
-    For an unknown name or option, listing the known ones, for an option that the detector does not use, for
+pairing: Of the detectors `rld-...`: "near_far" or "paper".
+weights: Of the detectors `front` and `front-warm`: weights of your own instead of the shipped ones. The path of a
+    file that ``conelane train front --out FILE`` wrote, or its content as bytes.
+Raises ValueError for an unknown name or option, listing the known ones, for an option that the detector does not use, for
     values out of range, and for weights that cannot be read.
 
-Notes
------
 Detectors are independent of each other, and the interpreter lock is free while they search: use one for each
 thread. Calls of one detector from several threads wait for each other; the wait does not count in the time
 limit.
 
-Examples
---------
 >>> import conelane
 >>> detector = conelane.Detector("front")
 >>> lane = detector.detect([[2, -1.5], [2, 1.5], [6, -1.5], [6, 1.5], [10, -1.5], [10, 1.5]], (0, 0, 0))
@@ -185,43 +170,25 @@ Examples
 )";
 
 constexpr const char* kDetect =
-    R"(detect(cones, pose, ids=None, colors=None, confidences=None, time_limit_ms=50.0, *, covariances=None)
+    R"(detect(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, confidences: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 50.0, *, covariances: Optional[ArrayLike] = None) -> Lane
 
 The lane among cones.
 
-Parameters
-----------
-cones : (N, 2) array_like of float
-    Positions x, y [m], in any order, in the frame of `pose`: a map, or the car.
-pose : (3,) array_like of float
-    The car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a frame of the car with x ahead and y
+cones: (N, 2), positions x, y [m], in any order, in the frame of `pose`: a map, or the car.
+pose: (3,), the car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a frame of the car with x ahead and y
     to the left it is (0, 0, 0).
-ids : (N,) array_like of int, optional
-    Distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its
-    id. By default the index.
-colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
-    "unknown", "blue", "yellow", "orange", "big_orange", or their codes 0 to 4 (`Color`). Or probabilities of unknown, blue,
-    yellow, small orange and big orange, which add up to 1 for each cone: `front` uses them, other detectors
-    the most probable label. By default unknown.
-confidences : (N,) array_like of float, optional
-    Of the detections, in [0, 1]. By default 1.
-time_limit_ms : float or None
-    Wall clock [ms]; None for no limit.
-covariances : (N, 2, 2) array_like of float, optional
-    Of the positions [m^2], in the frame of `pose`: symmetric and positive semidefinite. `front` uses them. By
-    default unknown, which is the same as 0.
+ids: (N,), distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its id.
+    By default the index.
+colors: (N,), "unknown", "blue", "yellow", "orange", "big_orange", or their codes 0 to 4 (`Color`). Or probabilities
+    of unknown, blue, yellow, small orange and big orange, which add up to 1 for each cone: `front` uses them, other
+    detectors the most probable label. By default unknown.
+confidences: (N,), of the detections, in [0, 1]. By default 1.
+time_limit_ms: Wall clock [ms]; None for no limit.
+covariances: (N, 2, 2), of the positions [m^2], in the frame of `pose`: symmetric and positive semidefinite. `front`
+    uses them. By default unknown, which is the same as 0.
+Raises ValueError for wrong shapes and dtypes, numbers that are not finite, an invalid covariance, and an id that occurs
+    twice.
 
-Returns
--------
-Lane
-
-Raises
-------
-ValueError
-    For wrong shapes and dtypes, numbers that are not finite, an invalid covariance, and an id that occurs twice.
-
-Examples
---------
 >>> import conelane
 >>> conelane.Detector("clc").detect([[0.0, float("nan")]], (0, 0, 0))
 Traceback (most recent call last):
@@ -229,25 +196,16 @@ Traceback (most recent call last):
 ValueError: cones[0].y: must be a finite number
 )";
 
-constexpr const char* kDetectScene = R"(detect_scene(scene, time_limit_ms=50.0)
+constexpr const char* kDetectScene =
+    R"(detect_scene(scene: Scene, time_limit_ms: Optional[float] = 50.0) -> Lane
 
 The same for a `Scene`. The lane has the scene's id.
-
-Returns
--------
-Lane
 )";
 
-constexpr const char* kMethods = R"(methods()
+constexpr const char* kMethods = R"(methods() -> Dict[str, str]
 
 The detectors of the library, by name, with their descriptions. The first one is for driving.
 
-Returns
--------
-dict of str to str
-
-Examples
---------
 >>> import conelane
 >>> "clc" in conelane.methods()
 True
@@ -311,38 +269,22 @@ std::optional<py::array_t<double>> course(PlannerObject& planner) {
 }
 
 constexpr const char* kPlanner =
-    R"(Planner(mission="trackdrive", detector="front-warm", laps=None, *, max_age_s=1.0, step_m=0.5, smoothing_m=1.75, max_gap_m=5.5, default_width_m=3.5, **options)
+    R"(Planner(mission: str = "trackdrive", detector: str = "front-warm", laps: Optional[int] = None, *, max_age_s: float = 1.0, step_m: float = 0.5, smoothing_m: float = 1.75, max_gap_m: float = 5.5, default_width_m: float = 3.5, **options)
 
 The path to drive in each frame of an event, from the start line to the stop.
 
-Parameters
-----------
-mission : str
-    "trackdrive", "autocross", "acceleration" or "skidpad".
-detector : str
-    One of `methods()`.
-laps : int, optional
-    Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
-max_age_s : float
-    Largest age of a lane that is still driven [s].
-step_m, smoothing_m, max_gap_m, default_width_m : float
-    Of the lanes in plans, see `Lane.drivable`.
-nearest, parameters, pairing, weights : optional
-    Options of the detector, see `Detector`.
-
-Raises
-------
-ValueError
-    For an unknown mission, detector or option, for one that the mission or the detector does not use, and for
+mission: "trackdrive", "autocross", "acceleration" or "skidpad".
+detector: One of `methods()`.
+laps: Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
+max_age_s: Largest age of a lane that is still driven [s].
+step_m, smoothing_m, max_gap_m, default_width_m: Of the lanes in plans, see `Lane.drivable`.
+nearest, parameters, pairing, weights: Options of the detector, see `Detector`.
+Raises ValueError for an unknown mission, detector or option, for one that the mission or the detector does not use, and for
     values out of range.
 
-Notes
------
 Planners are independent of each other, and the interpreter lock is free while they plan: use one for each run.
 Calls of one planner from several threads wait for each other.
 
-Examples
---------
 >>> import conelane
 >>> planner = conelane.Planner(mission="autocross")
 >>> cones = [[x, y] for x in (2, 6, 10, 14) for y in (-1.5, 1.5)]
@@ -357,51 +299,30 @@ True
 )";
 
 constexpr const char* kUpdate =
-    R"(update(cones, pose, time_s, ids=None, colors=None, time_limit_ms=20.0, *, confidences=None, covariances=None)
+    R"(update(cones: ArrayLike, pose: ArrayLike, time_s: float, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 20.0, *, confidences: Optional[ArrayLike] = None, covariances: Optional[ArrayLike] = None) -> Plan
 
 The plan of the next frame.
 
-Parameters
-----------
-cones : (N, 2) array_like of float
-    Positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
-pose : (3,) array_like of float
-    The car in a fixed map: x, y [m] and yaw [rad].
-time_s : float
-    Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
+cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
+pose: (3,), the car in a fixed map: x, y [m] and yaw [rad].
+time_s: Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
     nothing: its plan is the last plan, with the state "bridging" if the frame is older.
-ids : (N,) array_like of int, optional
-    Distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised by
-    its place.
-colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
-    As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both sides of the lane are
-    the start line, big ones before others.
-time_limit_ms : float or None
-    Of the detector, wall clock [ms]; None for no limit.
-confidences : (N,) array_like of float, optional
-    Of the detections, in [0, 1]. By default 1.
-covariances : (N, 2, 2) array_like of float, optional
-    As of `Detector.detect`. They are checked, and the planner does not use them: it keeps means of many sightings.
-
-Returns
--------
-Plan
-
-Raises
-------
-ValueError
-    For wrong shapes and dtypes, numbers that are not finite, and an id that occurs twice; the planner then stays
-    unchanged.
+ids: (N,), distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised
+    by its place.
+colors: (N,), as in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on
+    both sides of the lane are the start line, big ones before others.
+time_limit_ms: Of the detector, wall clock [ms]; None for no limit.
+confidences: (N,), of the detections, in [0, 1]. By default 1.
+covariances: (N, 2, 2), as of `Detector.detect`. They are checked, and the planner does not use them: it keeps means
+    of many sightings.
+Raises ValueError for wrong shapes and dtypes, numbers that are not finite, and an id that occurs twice; the planner then
+    stays unchanged.
 )";
 
-constexpr const char* kCourse = R"(course()
+constexpr const char* kCourse = R"(course() -> Optional[NDArray[float64]]
 
 The whole course, once a lap is known.
-
-Returns
--------
-(N, 7) ndarray of float64 or None
-    Columns as of `Lane.centre_line`; the last row is one step before the first one. None before that, and
+Returns (N, 7), columns as of `Lane.centre_line`; the last row is one step before the first one. None before that, and
     in acceleration and skidpad.
 )";
 
@@ -409,14 +330,14 @@ void add_plan(py::module_& module) {
     Class<PlanObject>(module, "Plan", "The path to drive. Every attribute is a copy.")
         .get(
             "state",
-            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame; "bridging": no lane in
-this frame, so the rest of an earlier one; "lost": no earlier lane is left, so there is no path: brake;
-"finished": the last line is crossed, and the lane is the stretch on which to come to rest.)",
+            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame; "bridging": no lane in this
+frame, so the rest of an earlier one; "lost": no earlier lane is left, so there is no path: brake; "finished": the
+last line is crossed, and the lane is the stretch on which to come to rest.)",
             &PlanObject::state, kName)
         .get(
             "centre_line",
-            R"((N, 7) ndarray of float64: that of `lane`, from the car on. N is 0 if the state is "searching" or "lost",
-and when the car is at rest at the end.)",
+            R"(NDArray[float64]: (N, 7), that of `lane`, from the car on. N is 0 if the state is "searching" or "lost", and when the
+car is at rest at the end.)",
             &PlanObject::lane, kArray)
         .get("lane", "DrivableLane: the lane to drive", &Plan::lane)
         .get("safe_m", "float: trusted length along `centre_line`, or the rest of it [m]", &Plan::safe_m)
@@ -450,7 +371,7 @@ void add_planner(py::module_& module) {
         })
         .method(kUpdate, update)
         .method(kCourse, course)
-        .method("reset()\n\nForgets the run.\n", &PlannerObject::reset)
+        .method("reset() -> None\n\nForgets the run.\n", &PlannerObject::reset)
         .get("mission", "str: its name", &PlannerObject::mission, kName)
         .get("detector", "str: its name", &PlannerObject::detector)
         .repr([](const PlannerObject& p) {
@@ -467,7 +388,8 @@ void add_detector(py::module_& module) {
         })
         .method(kDetect, detect)
         .method(kDetectScene, detect_scene)
-        .method("reset()\n\nForgets earlier calls: for a new lap or another place.\n", &DetectorObject::reset)
+        .method("reset() -> None\n\nForgets earlier calls: for a new lap or another place.\n",
+                &DetectorObject::reset)
         .get("name", "str: as `methods` has it", &DetectorObject::name)
         .get("meaning", "str: one line", &DetectorObject::description)
         .repr([](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });

@@ -117,28 +117,18 @@ static_assert(DrivableOptions{}.step_m == 0.5 && DrivableOptions{}.smoothing_m =
                   DrivableOptions{}.max_gap_m == 5.5 && DrivableOptions{}.default_width_m == 3.5,
               "the docstrings have the defaults");
 
-constexpr const char* kCentreLine = R"(centre_line(step_m=0.5, *, smoothing_m=1.75, usual_width_m=3.5)
+constexpr const char* kCentreLine =
+    R"(centre_line(step_m: float = 0.5, *, smoothing_m: float = 1.75, usual_width_m: float = 3.5) -> NDArray[float64]
 
 The middle of the lane from the car on.
 
-Parameters
-----------
-step_m : float
-    Arc length from point to point [m], in [0.01, 100].
-smoothing_m : float
-    Length scale of the smoothing [m], in [0.25, 5].
-usual_width_m : float
-    Width of a lane of which only one boundary was found [m], in [1, 6.5].
-
-Returns
--------
-(M, 7) ndarray of float64
-    Columns: s, the arc length from the car's foot point [m]; x, y [m]; heading [rad], in (-pi, pi]; curvature
-    [1/m], positive in a left bend; distance to the left and to the right boundary [m]. M is 0 if there is
+step_m: Arc length from point to point [m], in [0.01, 100].
+smoothing_m: Length scale of the smoothing [m], in [0.25, 5].
+usual_width_m: Width of a lane of which only one boundary was found [m], in [1, 6.5].
+Returns (M, 7), columns: s, the arc length from the car's foot point [m]; x, y [m]; heading [rad], in (-pi, pi];
+    curvature [1/m], positive in a left bend; distance to the left and to the right boundary [m]. M is 0 if there is
     no lane.
 
-Examples
---------
 >>> import conelane
 >>> cones = [[0, -1.5], [0, 1.5], [4, -1.5], [4, 1.5], [8, -1.5], [8, 1.5]]
 >>> line = conelane.Detector("front").detect(cones, (0, 0, 0)).centre_line(step_m=2)
@@ -149,79 +139,35 @@ Examples
 )";
 
 constexpr const char* kDrivable =
-    R"(drivable(step_m=0.5, *, smoothing_m=1.75, max_gap_m=5.5, default_width_m=3.5)
+    R"(drivable(step_m: float = 0.5, *, smoothing_m: float = 1.75, max_gap_m: float = 5.5, default_width_m: float = 3.5) -> DrivableLane
 
 The centre line with the gaps that it bridges and the boundary that was inferred.
 
-Parameters
-----------
-step_m, smoothing_m : float
-    As of `centre_line`.
-max_gap_m : float
-    Longer gaps of a boundary are reported as bridged [m].
-default_width_m : float
-    The `usual_width_m` of `centre_line`.
-
-Returns
--------
-DrivableLane
+step_m, smoothing_m: As of `centre_line`.
+max_gap_m: Longer gaps of a boundary are reported as bridged [m].
+default_width_m: The `usual_width_m` of `centre_line`.
 )";
 
-constexpr const char* kPlot = R"(plot(ax=None)
+constexpr const char* kPlot = R"(plot(ax: Optional[Axes] = None) -> Axes
 
 Draws cones, both boundaries, the centre line and the car. Needs matplotlib.
 
-Parameters
-----------
-ax : matplotlib.axes.Axes, optional
-    By default those of the current figure.
-
-Returns
--------
-matplotlib.axes.Axes
+ax: By default those of the current figure.
 )";
 
-constexpr const char* kReadLanes = R"(read_lanes(file, scenes)
+constexpr const char* kReadLanes =
+    R"(read_lanes(file: Union[str, "PathLike[str]"], scenes: Sequence[Scene]) -> List[Lane]
 
 Lanes of a `*.lanes.jsonl` file.
 
-Parameters
-----------
-file : str or os.PathLike
-scenes : sequence of Scene
-    The scenes of the lanes, found by id.
-
-Returns
--------
-list of Lane
-
-Raises
-------
-ValueError
-    Naming file, line and key.
+scenes: The scenes of the lanes, found by id.
+Raises ValueError, naming file, line and key.
 )";
 
-constexpr const char* kWriteLanes = R"(write_lanes(file, lanes)
+constexpr const char* kWriteLanes =
+    R"(write_lanes(file: Union[str, "PathLike[str]"], lanes: Sequence[Lane]) -> None
 
 Writes a `*.lanes.jsonl` file. If that fails, an old file stays unchanged.
-
-Parameters
-----------
-file : str or os.PathLike
-lanes : sequence of Lane
-
-Examples
---------
->>> import conelane, os, tempfile
->>> scenes = conelane.generate_scenes(conelane.load_tracks("generated:circle")[0], every_m=20.0)
->>> detector = conelane.Detector("front")
->>> lanes = [detector.detect_scene(scene) for scene in scenes]
->>> with tempfile.TemporaryDirectory() as folder:
-...     file = os.path.join(folder, "circle.lanes.jsonl")
-...     conelane.write_lanes(file, lanes)
-...     again = conelane.read_lanes(file, scenes)
->>> [a.left.tolist() for a in again] == [a.left.tolist() for a in lanes]
-True
 )";
 
 /// What a lane and the answer in a plan say; `steps` lead to the detector's answer.
@@ -230,38 +176,38 @@ void add_answer(Class<Object>& object, Steps... steps) {
     object
         .get(
             "status",
-            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before
-a lane that can be driven was found; "error": see `message`.)",
+            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before a lane
+that can be driven was found; "error": see `message`.)",
             steps..., &LaneAnswer::status, kName)
         .get("found", "bool: whether the status is \"found\"", steps..., &LaneAnswer::status,
              [](LaneStatus status) { return status == LaneStatus::found; })
         .get("message", "str: of an error, or of a lane that is stopped because it cannot be driven",
              steps..., &LaneAnswer::message)
         .get("stopped_by",
-             R"(str or None: the limit that ended the search: "time", "iterations" or "memory")", steps...,
+             R"(Optional[str]: the limit that ended the search: "time", "iterations" or "memory")", steps...,
              &LaneAnswer::stopped_by, kName)
         .get("confidence",
-             "float or None: probability that the lane is usable; None if the detector has none", steps...,
+             "Optional[float]: probability that the lane is usable; None if the detector has none", steps...,
              &LaneAnswer::confidence)
         .get(
             "trusted_m",
-            R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:
-with a `confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was
-found, or if a file does not have it: do not trust that lane.)",
+            R"(Optional[float]: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one: with a
+`confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was found, or if a
+file does not have it: do not trust that lane.)",
             steps..., &LaneAnswer::trusted_m);
 }
 
 void add_boundaries(Class<LaneObject>& lane) {
     lane.get(
             "left",
-            R"((L,) ndarray of int64: the cones of the left boundary from the car outward, as indices into `cones`; empty
-if no lane, or only the right boundary, was found.)",
+            R"(NDArray[int64]: (L,), the cones of the left boundary from the car outward, as indices into `cones`; empty if no lane,
+or only the right boundary, was found.)",
             [](const LaneObject& l) { return boundary_indices(l, true); })
-        .get("right", "(R,) ndarray of int64: the same for the right boundary",
+        .get("right", "NDArray[int64]: (R,), the same for the right boundary",
              [](const LaneObject& l) { return boundary_indices(l, false); })
-        .get("left_points", "(L, 2) ndarray of float64: the left boundary's positions [m]",
+        .get("left_points", "NDArray[float64]: (L, 2), the left boundary's positions [m]",
              [](const LaneObject& l) { return array(boundary(l, true)); })
-        .get("right_points", "(R, 2) ndarray of float64: the right boundary's positions [m]",
+        .get("right_points", "NDArray[float64]: (R, 2), the right boundary's positions [m]",
              [](const LaneObject& l) { return array(boundary(l, false)); })
         .get("closed",
              "bool: a whole circuit, in which each boundary returns from its last cone to its first",
@@ -281,16 +227,16 @@ if no lane, or only the right boundary, was found.)",
 
 void add_record(Class<LaneObject>& lane) {
     lane.cones(&LaneObject::scene, &Scene::cones)
-        .get("pose", "(3,) ndarray of float64: x, y [m] and yaw [rad] of the car", &LaneObject::scene,
+        .get("pose", "NDArray[float64]: (3,), x, y [m] and yaw [rad] of the car", &LaneObject::scene,
              &Scene::pose, kArray)
         .get(
             "merged",
-            R"(dict of int to int: ids of the cones that the detector left out, because each is within 0.12 m of another
-cone (front, front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)",
+            R"(Dict[int, int]: ids of the cones that the detector left out, because each is within 0.12 m of another cone (front,
+front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)",
             merged)
-        .get("objective", "float or None: of a detector that states one",
+        .get("objective", "Optional[float]: of a detector that states one",
              [](const LaneObject& l) { return of_proof(l, &Optimality::objective); })
-        .get("bound", "float or None: proven lower bound of the objective",
+        .get("bound", "Optional[float]: proven lower bound of the objective",
              [](const LaneObject& l) { return of_proof(l, &Optimality::bound); })
         .get("latency_ms", "float: wall clock of the search [ms]", &LaneObject::record,
              &LaneRecord::latency_ms)
@@ -305,10 +251,10 @@ void add_answer_of_plan(py::module_& module) {
     answer
         .get(
             "left_ids",
-            R"((L,) ndarray of int64: cones of the left boundary from the car outward, by the ids of the frames; a
-cone without an id has a negative id of the planner's own)",
+            R"(NDArray[int64]: (L,), cones of the left boundary from the car outward, by the ids of the frames; a cone without an id
+has a negative id of the planner's own)",
             &LaneAnswer::lane, &Lane::left, kArray)
-        .get("right_ids", "(R,) ndarray of int64: the same for the right boundary", &LaneAnswer::lane,
+        .get("right_ids", "NDArray[int64]: (R,), the same for the right boundary", &LaneAnswer::lane,
              &Lane::right, kArray)
         .repr([](const LaneAnswer& a) {
             return fmt::format("<conelane.Answer {}: {} left, {} right>", to_string(a.status),
@@ -318,16 +264,16 @@ cone without an id has a negative id of the planner's own)",
 
 void add_drivable_lane(py::module_& module) {
     Class<DrivableLane>(module, "DrivableLane", "A lane ready to be driven. Every attribute is a copy.")
-        .get("centre_line", "(N, 7) ndarray of float64: columns as of `Lane.centre_line`",
+        .get("centre_line", "NDArray[float64]: (N, 7), columns as of `Lane.centre_line`",
              [](const DrivableLane& d) { return array(d); })
         .get("closed", "bool: the last row is one step before the first one", &DrivableLane::closed)
         .get("length_m", "float: of the centre line [m]", &DrivableLane::length_m)
-        .get("trusted_m", "float or None: arc length up to which the detector trusts the lane [m]",
+        .get("trusted_m", "Optional[float]: arc length up to which the detector trusts the lane [m]",
              &DrivableLane::trusted_m)
         .get(
             "bridged",
-            R"(list of (str, float, float): gaps between successive cones longer than `max_gap_m`, in which a cone is
-missing or was not seen: "left" or "right", and the arc lengths beside the two cones [m])",
+            R"(List[Tuple[str, float, float]]: gaps between successive cones longer than `max_gap_m`, in which a cone is missing or
+was not seen: "left" or "right", and the arc lengths beside the two cones [m])",
             [](const DrivableLane& d) {
                 py::list gaps;
                 for (const BridgedGap& gap : d.bridged)
@@ -389,31 +335,17 @@ std::optional<double> heading_error_rad(const SceneScore& score) {
     return score.centre_line_error->heading_rad;
 }
 
-constexpr const char* kScore = R"(score(scene, lane, boundaries=None)
+constexpr const char* kScore =
+    R"(score(scene: Scene, lane: Lane, boundaries: Optional[Boundaries] = None) -> Score
 
 Compares a lane with the true one. The measures are defined in docs/measures.md.
 
-Parameters
-----------
-scene : Scene
-    With a ground truth, or of a run whose boundaries have the driven path.
-lane : Lane
-    Of this scene: cones are compared by their ids.
-boundaries : Boundaries, optional
-    Of the whole course. Without them divergence is unknown.
+scene: With a ground truth, or of a run whose boundaries have the driven path.
+lane: Of this scene: cones are compared by their ids.
+boundaries: Of the whole course. Without them divergence is unknown.
+Raises ValueError if the scene has no ground truth with two cones on each side, or if the lane names a cone that the scene
+    does not have.
 
-Returns
--------
-Score
-
-Raises
-------
-ValueError
-    If the scene has no ground truth with two cones on each side, or if the lane names a cone that the
-    scene does not have.
-
-Examples
---------
 >>> import conelane
 >>> track = conelane.load_tracks("generated:circle")[0]
 >>> scene = conelane.generate_scenes(track, every_m=20.0)[0]
@@ -424,28 +356,29 @@ Examples
 
 void add_score(py::module_& module) {
     Class<SceneScore>(module, "Score", "What one lane is worth, by the measures of both papers.")
-        .get("usable", "bool or None: whether a car can drive by the lane; None without boundaries",
+        .get("usable", "Optional[bool]: whether a car can drive by the lane; None without boundaries",
              &SceneScore::usable)
         .get(
             "category",
             R"(str: "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short" or "near_ground_truth")",
             &SceneScore::category, kName)
         .get("success", "bool: any category but none and diverging_below_20", &SceneScore::success)
-        .get("accurate", "bool or None: passes the four checks of the RLD paper; None if they do not apply",
+        .get("accurate", "Optional[bool]: passes the four checks of the RLD paper; None if they do not apply",
              accurate)
         .get("error", "bool: the method failed", &SceneScore::error)
-        .get("iou", "float or None: intersection over union with the true lane, in [0, 1]", &SceneScore::iou)
+        .get("iou", "Optional[float]: intersection over union with the true lane, in [0, 1]",
+             &SceneScore::iou)
         .get("lane_length_m", "float: of the lane [m]", &SceneScore::lane_length_m)
         .get("ground_truth_length_m", "float: of the true lane [m]", &SceneScore::ground_truth_length_m)
         .get("divergence_distance_m",
-             "float or None: distance at which the lane leaves the course [m]; None if it does not",
+             "Optional[float]: distance at which the lane leaves the course [m]; None if it does not",
              &SceneScore::divergence_distance_m)
         .get("lateral_error_m",
-             "(K,) ndarray of float32 or None: lateral error of the centre line every 0.5 m [m]; for usable "
+             "Optional[NDArray[float32]]: (K,), lateral error of the centre line every 0.5 m [m]; for usable "
              "lanes",
              lateral_error_m)
         .get("heading_error_rad",
-             "float or None: heading error of the centre line 10 m ahead [rad]; for usable lanes",
+             "Optional[float]: heading error of the centre line 10 m ahead [rad]; for usable lanes",
              heading_error_rad)
         .repr([](const SceneScore& s) { return fmt::format("<conelane.Score {}>", to_string(s.category)); });
 

@@ -3,25 +3,31 @@
 #include "evaluation/input_error.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <pybind11/eval.h>
 
 namespace conelane::python {
 
 Signature::Signature(std::string_view doc) : name(doc.substr(0, doc.find('('))) {
-    std::string_view rest = doc.substr(name.size() + 1, doc.find('\n') - name.size() - 2);
-    while (!rest.empty() && !rest.starts_with("**")) {
-        const std::string_view argument = rest.substr(0, rest.find(", "));
-        rest.remove_prefix(std::min(rest.size(), argument.size() + 2));
-        const std::size_t equals = std::min(argument.find('='), argument.size());
-        arguments.push_back({std::string(argument.substr(0, equals)), {}});
-        if (equals < argument.size())
-            arguments.back().value = py::eval(std::string(argument.substr(equals + 1)));
+    const std::string line(doc.substr(0, doc.find('\n')));
+    py::dict names;
+    py::exec("from __future__ import annotations\ndef " + line + ": pass", names);  // types stay text
+    const py::module_ inspect = py::module_::import("inspect");
+    const py::object empty = inspect.attr("Parameter").attr("empty");
+    const py::object parameters = inspect.attr("signature")(names[name.c_str()]).attr("parameters");
+    bool has_keywords_alone = false;
+    for (const py::handle parameter : parameters.attr("values")()) {
+        const std::string kind = py::str(parameter.attr("kind").attr("name"));
+        if (kind == "VAR_KEYWORD") break;
+        if (kind == "KEYWORD_ONLY" && !std::exchange(has_keywords_alone, true))
+            arguments.push_back({"*", {}});
+        const py::object value = parameter.attr("default");
+        arguments.push_back({py::str(parameter.attr("name")), value.is(empty) ? py::object() : value});
     }
 }
 

@@ -79,36 +79,18 @@ py::dict parameters_as_dict(const std::string& name) {
 }
 
 constexpr const char* kSolveRld =
-    R"(solve_rld(cones, pose, ids=None, colors=None, confidences=None, *, parameters=None, pairing=None, solver='path-pair', time_limit_ms=None, absolute_gap=1e-09)
+    R"(solve_rld(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, confidences: Optional[ArrayLike] = None, *, parameters: Optional[Union[str, Mapping[str, Any]]] = None, pairing: Optional[str] = None, solver: str = 'path-pair', time_limit_ms: Optional[float] = None, absolute_gap: float = 1e-09) -> RldSolution
 
 The lane graph of least cost: RLD, solved to its proven optimum.
 
-Parameters
-----------
-cones, pose, ids, colors, confidences
-    As `Detector.detect` takes them.
-parameters : str or dict, optional
-    Name of a parameter set, or a dict of the values that differ from the defaults; see `rld_parameters`.
-pairing : str, optional
-    "near_far" or "paper", instead of the parameters'.
-solver : str
-    "path-pair", or "exhaustive" for at most 9 cones; both are exact.
-time_limit_ms : float or None
-    Wall clock [ms]; None for no limit.
-absolute_gap : float
-    A lane graph whose cost is this close to the bound counts as optimal.
+cones, pose, ids, colors, confidences: As `Detector.detect` takes them.
+parameters: Name of a parameter set, or a dict of the values that differ from the defaults; see `rld_parameters`.
+pairing: "near_far" or "paper", instead of the parameters'.
+solver: "path-pair", or "exhaustive" for at most 9 cones; both are exact.
+time_limit_ms: Wall clock [ms]; None for no limit.
+absolute_gap: A lane graph whose cost is this close to the bound counts as optimal.
+Raises ValueError as `Detector.detect`, and for unknown names and parameters out of range.
 
-Returns
--------
-RldSolution
-
-Raises
-------
-ValueError
-    As `Detector.detect`, and for unknown names and parameters out of range.
-
-Examples
---------
 >>> import conelane
 >>> cones = [[1, -1.5], [1, 1.5], [4, -1.5], [4, 1.5], [7, -1.5], [7, 1.5]]
 >>> solution = conelane.solve_rld(cones, (0, 0, 0))
@@ -120,22 +102,13 @@ Examples
 (-4.0, -4.0)
 )";
 
-constexpr const char* kRldParameters = R"(rld_parameters(name='default')
+constexpr const char* kRldParameters = R"(rld_parameters(name: str = 'default') -> Dict[str, Any]
 
 Parameters of the RLD model.
 
-Parameters
-----------
-name : str
-    "default" or one of the tuned sets; an unknown name lists them.
+name: "default" or one of the tuned sets; an unknown name lists them.
+Returns lengths in metres, angles in radians.
 
-Returns
--------
-dict of str to float, str or bool
-    Lengths in metres, angles in radians.
-
-Examples
---------
 >>> import conelane
 >>> conelane.rld_parameters()["d_max"]
 6.5
@@ -151,21 +124,21 @@ void add_rld(py::module_& module) {
     Class<SolutionObject>(module, "RldSolution", "What `solve_rld` found. Every attribute is a copy.")
         .get(
             "status",
-            R"(str: "optimal", "feasible" (a limit ended the proof), "infeasible" (by proof), "stopped" (a limit
-ended the search before any lane graph) or "error")",
+            R"(str: "optimal", "feasible" (a limit ended the proof), "infeasible" (by proof), "stopped" (a limit ended the search
+before any lane graph) or "error")",
             &SolutionObject::status, kName)
         .get("stopped_by",
-             R"(str or None: the limit that ended the search: "time", "memory" or "iterations")",
+             R"(Optional[str]: the limit that ended the search: "time", "memory" or "iterations")",
              &SolutionObject::stopped_by, kName)
-        .get("edges", "(K, 2) ndarray of int64: the lane graph, as indices into the cones", edges)
-        .get("objective", "float or None: cost of the lane graph", &RldReport::objective)
-        .get("bound", "float or None: proven lower bound of the least cost", &RldReport::bound)
+        .get("edges", "NDArray[int64]: (K, 2), the lane graph, as indices into the cones", edges)
+        .get("objective", "Optional[float]: cost of the lane graph", &RldReport::objective)
+        .get("bound", "Optional[float]: proven lower bound of the least cost", &RldReport::bound)
         .get("nodes", "int: of the search tree", &RldReport::nodes)
         .get("total_ms", "float: wall clock [ms]", &SolutionObject::total_ms)
         .get("message", "str: of an error", &RldReport::message)
-        .get("left", "(L,) ndarray of int64: left boundary from the car outward, as indices into the cones",
+        .get("left", "NDArray[int64]: (L,), left boundary from the car outward, as indices into the cones",
              [](const SolutionObject& s) { return array(indices_of(s.lane.left, s.cones, "left")); })
-        .get("right", "(R,) ndarray of int64: right boundary",
+        .get("right", "NDArray[int64]: (R,), right boundary",
              [](const SolutionObject& s) { return array(indices_of(s.lane.right, s.cones, "right")); })
         .repr([](const SolutionObject& s) {
             const std::string reason =

@@ -94,25 +94,16 @@ std::vector<Track> load_tracks_warning(const std::string& spec) {
 }
 
 constexpr const char* kScene =
-    R"(Scene(cones, pose, ids=None, colors=None, confidences=None, *, id='', ground_truth=None, closed=False, track='', covariances=None)
+    R"(Scene(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, confidences: Optional[ArrayLike] = None, *, id: str = '', ground_truth: Optional[Tuple[ArrayLike, ArrayLike]] = None, closed: bool = False, track: str = '', covariances: Optional[ArrayLike] = None)
 
 The input of one call of a detector, and the truth for scoring. Every attribute is a copy.
 
-Parameters
-----------
-cones, pose, ids, colors, confidences, covariances
-    As `Detector.detect` takes them.
-id : str
-    Id of the scene.
-ground_truth : tuple of two (K,) array_like of int, optional
-    The true left and right boundary from the car outward, as indices into `cones`.
-closed : bool
-    Whether that is a whole circuit.
-track : str
-    Name of its course.
+cones, pose, ids, colors, confidences, covariances: As `Detector.detect` takes them.
+id: Id of the scene.
+ground_truth: The true left and right boundary from the car outward, as indices into `cones`.
+closed: Whether that is a whole circuit.
+track: Name of its course.
 
-Examples
---------
 >>> import conelane
 >>> scene = conelane.Scene([[0, 1.5], [0, -1.5], [4, 1.5], [4, -1.5]], (0, 0, 0), ground_truth=([0, 2], [1, 3]), id="start")
 >>> scene
@@ -120,36 +111,17 @@ Examples
 )";
 
 constexpr const char* kReadScenes =
-    R"(read_scenes(file)
+    R"(read_scenes(file: Union[str, "PathLike[str]"]) -> List[Scene]
 
 Scenes of a `*.scenes.jsonl` file. A scene without an id gets its line number.
-
-Parameters
-----------
-file : str or os.PathLike
-
-Returns
--------
-list of Scene
-
-Raises
-------
-ValueError
-    Naming file, line and key.
+Raises ValueError, naming file, line and key.
 )";
 
 constexpr const char* kWriteScenes =
-    R"(write_scenes(file, scenes)
+    R"(write_scenes(file: Union[str, "PathLike[str]"], scenes: Sequence[Scene]) -> None
 
 Writes a `*.scenes.jsonl` file. If that fails, an old file stays unchanged.
 
-Parameters
-----------
-file : str or os.PathLike
-scenes : sequence of Scene
-
-Examples
---------
 >>> import conelane, os, tempfile
 >>> scene = conelane.Scene([[0, 1.5], [0, -1.5]], pose=(0, 0, 0.1), id="start")
 >>> with tempfile.TemporaryDirectory() as folder:
@@ -160,121 +132,57 @@ Examples
 )";
 
 constexpr const char* kBoundaries =
-    R"(Boundaries(left, right, closed=True)
+    R"(Boundaries(left: ArrayLike, right: ArrayLike, closed: bool = True)
 
 The whole annotated boundaries of a course in driving order, from which divergence is measured.
 
-Parameters
-----------
-left, right : (K, 2) array_like of float
-    Positions [m].
-closed : bool
-    Whether the course is a circuit.
+left, right: (K, 2), positions [m].
+closed: Whether the course is a circuit.
 )";
 
 constexpr const char* kReadBoundaries =
-    R"(read_boundaries(file)
+    R"(read_boundaries(file: Union[str, "PathLike[str]"]) -> Dict[str, Boundaries]
 
 Boundaries of the courses of a scenes file, from the `*.tracks.json` file beside it.
-
-Parameters
-----------
-file : str or os.PathLike
-
-Returns
--------
-dict of str to Boundaries
-    By the name of the track.
-
-Raises
-------
-ValueError
-    Naming file and key.
+Returns by the name of the track.
+Raises ValueError, naming file and key.
 )";
 
 constexpr const char* kWriteBoundaries =
-    R"(write_boundaries(file, boundaries)
+    R"(write_boundaries(file: Union[str, "PathLike[str]"], boundaries: Dict[str, Boundaries]) -> None
 
 Writes a `*.tracks.json` file. If that fails, an old file stays unchanged.
-
-Parameters
-----------
-file : str or os.PathLike
-boundaries : dict of str to Boundaries
-
-Examples
---------
->>> import conelane, os, tempfile
->>> track = conelane.load_tracks("generated:circle")[0]
->>> with tempfile.TemporaryDirectory() as folder:
-...     file = os.path.join(folder, "circle.tracks.json")
-...     conelane.write_boundaries(file, {track.name: track.boundaries})
-...     len(conelane.read_boundaries(file)[track.name].left) == len(track.left)
-True
 )";
 
 constexpr const char* kLoadTracks =
-    R"(load_tracks(spec)
+    R"(load_tracks(spec: str) -> List[Track]
 
 Tracks from files of several formats, or generated ones.
 
-Parameters
-----------
-spec : str
-    "generated:NAME" (straight, circle, ...), "fsd:DIR" or "fsd:DIR:1,2", "pacsim:FILE", "eufs:FILE",
-    "ftlog:FILE", a run of ft-fsd. A folder instead of the file stands for all its files.
+spec: "generated:NAME" (straight, circle, ...), "fsd:DIR" or "fsd:DIR:1,2", "pacsim:FILE", "eufs:FILE", "ftlog:FILE",
+    a run of ft-fsd. A folder instead of the file stands for all its files.
+Raises ValueError, naming the file, or the spec.
+Warns (UserWarning) for each of the `warnings` of a track.
 
-Returns
--------
-list of Track
-
-Raises
-------
-ValueError
-    Naming the file, or the spec.
-
-Warns
------
-UserWarning
-    For each of the `warnings` of a track.
-
-Examples
---------
 >>> import conelane
 >>> conelane.load_tracks("generated:straight")
 [<conelane.Track 'straight': 126 cones>]
 )";
 
 constexpr const char* kGenerateScenes =
-    R"(generate_scenes(track, *, false_positive_rate=0.0, range_m=30.0, every_m=1.1, condition=None, with_color=False, seed=0, noise_by_range=None)
+    R"(generate_scenes(track: Track, *, false_positive_rate: float = 0.0, range_m: float = 30.0, every_m: float = 1.1, condition: Optional[str] = None, with_color: bool = False, seed: int = 0, noise_by_range: Optional[float] = None) -> List[Scene]
 
 What a car sees along a track, with the true lane.
 
-Parameters
-----------
-track : Track
-false_positive_rate : float
-    Share of false cones among all points of a scene, in [0, 0.99].
-range_m : float
-    Radius of the half disc ahead that is visible [m].
-every_m : float
-    Travel from scene to scene [m].
-condition : str, optional
-    "paper", "car" or "harsh": noise, missed cones, and false ones that stay where they are.
-with_color : bool
-    Whether cones show the colours of the track.
-seed : int
-    The same seed gives the same scenes.
-noise_by_range : float, optional
-    Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise of the
-    condition. Above 0 the scenes have `covariances`.
+false_positive_rate: Share of false cones among all points of a scene, in [0, 0.99].
+range_m: Radius of the half disc ahead that is visible [m].
+every_m: Travel from scene to scene [m].
+condition: "paper", "car" or "harsh": noise, missed cones, and false ones that stay where they are.
+with_color: Whether cones show the colours of the track.
+seed: The same seed gives the same scenes.
+noise_by_range: Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise
+    of the condition. Above 0 the scenes have `covariances`.
 
-Returns
--------
-list of Scene
-
-Examples
---------
 >>> import conelane
 >>> track = conelane.load_tracks("generated:circle")[0]
 >>> scenes = conelane.generate_scenes(track, false_positive_rate=0.3, every_m=20.0)
@@ -286,29 +194,29 @@ void add_scene(py::module_& module) {
     Class<AnnotatedScene, std::shared_ptr<AnnotatedScene>>(module, "Scene", kScene)
         .init(make_scene)
         .get("id", "str: of the scene", &AnnotatedScene::scene, &Scene::id)
-        .get("pose", "(3,) ndarray of float64: x, y [m] and yaw [rad]", &AnnotatedScene::scene, &Scene::pose,
+        .get("pose", "NDArray[float64]: (3,), x, y [m] and yaw [rad]", &AnnotatedScene::scene, &Scene::pose,
              kArray)
         .cones(&AnnotatedScene::scene, &Scene::cones)
         .get("color_probabilities",
-             "(N, 5) ndarray of float64: probabilities of unknown, blue, yellow, orange, big orange; 1 and 0 "
+             "NDArray[float64]: (N, 5), probabilities of unknown, blue, yellow, orange, big orange; 1 and 0 "
              "for a label",
              &AnnotatedScene::scene, &Scene::cones, python::color_probabilities)
-        .get("confidences", "(N,) ndarray of float64: of the detections", &AnnotatedScene::scene,
+        .get("confidences", "NDArray[float64]: (N,), of the detections", &AnnotatedScene::scene,
              &Scene::cones, python::confidences)
         .get("covariances",
-             "(N, 2, 2) ndarray of float64 or None: of the positions [m^2]; 0 for a cone without one, None "
+             "Optional[NDArray[float64]]: (N, 2, 2), of the positions [m^2]; 0 for a cone without one, None "
              "where no cone has one",
              &AnnotatedScene::scene, &Scene::cones, python::covariances)
         .get("ground_truth",
-             "tuple of two (K,) ndarray of int64 or None: left and right, as indices into `cones`",
+             "Optional[Tuple[NDArray[int64], NDArray[int64]]]: left and right, as indices into `cones`",
              ground_truth)
         .get("closed", "bool: whether the ground truth is a whole circuit",
              [](const AnnotatedScene& s) { return s.ground_truth && s.ground_truth->closed; })
         .get("track", "str: its name", &AnnotatedScene::track)
         .get("condition", "str: its name", &AnnotatedScene::condition)
-        .get("false_positive_rate", "float or None: share of all points",
+        .get("false_positive_rate", "Optional[float]: share of all points",
              &AnnotatedScene::false_positive_rate)
-        .get("range_m", "float or None: how far the car sees [m]", &AnnotatedScene::range_m)
+        .get("range_m", "Optional[float]: how far the car sees [m]", &AnnotatedScene::range_m)
         .repr([](const AnnotatedScene& s) {
             return fmt::format("<conelane.Scene '{}': {} cones>", s.scene.id, s.scene.cones.size());
         });
@@ -322,10 +230,10 @@ void add_boundaries(py::module_& module) {
         .init([](const py::object& left, const py::object& right, bool closed) {
             return TrackBoundaries{points(left, "left"), points(right, "right"), closed};
         })
-        .get("left", "(K, 2) ndarray of float64: positions [m]", &TrackBoundaries::left, kArray)
-        .get("right", "(K, 2) ndarray of float64: positions [m]", &TrackBoundaries::right, kArray)
+        .get("left", "NDArray[float64]: (K, 2), positions [m]", &TrackBoundaries::left, kArray)
+        .get("right", "NDArray[float64]: (K, 2), positions [m]", &TrackBoundaries::right, kArray)
         .get("closed", "bool: a circuit", &TrackBoundaries::closed)
-        .get("driven", "(K, 2) ndarray of float64: the driven path [m] of a run without boundaries",
+        .get("driven", "NDArray[float64]: (K, 2), the driven path [m] of a run without boundaries",
              &TrackBoundaries::driven, kArray);
     add_function(module, kReadBoundaries, read_track_boundaries);
     add_function(module, kWriteBoundaries, write_track_boundaries);
@@ -335,11 +243,11 @@ void add_track(py::module_& module) {
     Class<Track>(module, "Track", "A map of cones with annotated boundaries. Every attribute is a copy.")
         .get("name", "str: such as \"fsd_1\"", &Track::name)
         .cones(&Track::cones)
-        .get("left", "(K,) ndarray of int64: the left boundary in driving order, as indices into `cones`",
+        .get("left", "NDArray[int64]: (K,), the left boundary in driving order, as indices into `cones`",
              &Track::left, track_indices)
-        .get("right", "(K,) ndarray of int64: the right boundary", &Track::right, track_indices)
+        .get("right", "NDArray[int64]: (K,), the right boundary", &Track::right, track_indices)
         .get("closed", "bool: a circuit", &Track::closed)
-        .get("warnings", "list of str: facts about the recording that a user should know", &Track::warnings)
+        .get("warnings", "List[str]: facts about the recording that a user should know", &Track::warnings)
         .get("boundaries", "Boundaries: of the course",
              [](const Track& t) {
                  TrackBoundaries all = boundaries(t);

@@ -37,20 +37,13 @@ FloatArray = NDArray[np.float64]
 class Cones(NamedTuple):
     """Cones as `Detector.detect` takes them: `detect(**cones._asdict(), pose=pose)`.
 
-    Attributes
-    ----------
-    cones : (N, 2) ndarray of float64
-        Positions [m], in the frame of the message.
-    colors : (N,) ndarray of uint8, or (N, 5) ndarray of float64
-        Codes of `Color`; or, where the message has them, probabilities of unknown, blue, yellow, small and big
-        orange.
-    confidences : (N,) ndarray of float64, or None
-        None where the message has none.
-    ids : (N,) ndarray of int64, or None
-        None where the message has none.
-    covariances : (N, 2, 2) ndarray of float64, or None
-        Of the positions [m^2]. None where the message has none, or only zeros, which is what a message holds that
-        nobody filled.
+    cones: (N, 2), positions [m], in the frame of the message.
+    colors: (N,), codes of `Color`; or, where the message has them, probabilities of unknown, blue, yellow, small and
+        big orange.
+    confidences: (N,), None where the message has none.
+    ids: (N,), None where the message has none.
+    covariances: (N, 2, 2), of the positions [m^2]. None where the message has none, or only zeros, which is what a
+        message holds that nobody filled.
     """
 
     cones: FloatArray
@@ -144,24 +137,11 @@ _PACSIM_SURE = 1e-9  # how far the probability of a class may be below 1 that co
 def from_eufs(message: Any) -> Cones:
     """Cones of eufs_msgs/ConeArrayWithCovariance, in the order of its lists; small and big orange ones are orange.
 
-    Parameters
-    ----------
-    message : object or dict
-        With the lists blue_cones, yellow_cones, orange_cones, big_orange_cones and unknown_color_cones of cones that
-        have a `point` and, if they know it, a `covariance`: xx, xy, yx, yy.
+    message: With the lists blue_cones, yellow_cones, orange_cones, big_orange_cones and unknown_color_cones of cones
+        that have a `point` and, if they know it, a `covariance`: xx, xy, yx, yy.
+    Returns without confidences and ids.
+    Raises ValueError, naming the field that is missing, or a covariance of other than four numbers.
 
-    Returns
-    -------
-    Cones
-        Without confidences and ids.
-
-    Raises
-    ------
-    ValueError
-        Naming the field that is missing, or a covariance of other than four numbers.
-
-    Examples
-    --------
     >>> cones = from_eufs(to_eufs([[3, 1], [3, -2]], colors=["blue", "orange"]))
     >>> cones.cones.tolist(), cones.colors.tolist()
     ([[3.0, 1.0], [3.0, -2.0]], [1, 3])
@@ -176,26 +156,11 @@ def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
             covariances: Optional[ArrayLike] = None) -> Dict[str, Any]:
     """A eufs_msgs/ConeArrayWithCovariance as dict, without header.
 
-    Parameters
-    ----------
-    cones : (N, 2) array_like of float
-        Positions [m].
-    colors : (N,) array_like of str or int, optional
-        As `Detector.detect` takes them; cones that are orange and not big_orange become small ones.
-    covariances : (N, 2, 2) or (N, 4) array_like of float, optional
-        Row by row [m^2]; by default 0.
+    cones: (N, 2), positions [m].
+    colors: (N,), as `Detector.detect` takes them; cones that are orange and not big_orange become small ones.
+    covariances: Row by row [m^2]; by default 0.
+    Raises ValueError for wrong shapes and colours.
 
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    ValueError
-        For wrong shapes and colours.
-
-    Examples
-    --------
     >>> to_eufs([[3, 1]], colors=["blue"])["blue_cones"]
     [{'point': {'x': 3.0, 'y': 1.0, 'z': 0.0}, 'covariance': [0.0, 0.0, 0.0, 0.0]}]
     """
@@ -212,22 +177,9 @@ def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
 def from_fs_track(message: Any) -> Cones:
     """Cones of fs_msgs/Track, in its order, without confidences and ids; small and big orange ones are orange.
 
-    Parameters
-    ----------
-    message : object or dict
-        With a list `track` of cones that have `location` and `color`.
+    message: With a list `track` of cones that have `location` and `color`.
+    Raises ValueError, naming a missing field, or a colour that fs_msgs/Cone does not have.
 
-    Returns
-    -------
-    Cones
-
-    Raises
-    ------
-    ValueError
-        Naming a missing field, or a colour that fs_msgs/Cone does not have.
-
-    Examples
-    --------
     >>> from_fs_track({"track": [{"location": {"x": 1, "y": 2, "z": 0}, "color": 2}]}).colors
     array([3], dtype=uint8)
     """
@@ -242,8 +194,6 @@ def from_fs_track(message: Any) -> Cones:
 def to_fs_track(cones: ArrayLike, colors: Optional[ArrayLike] = None) -> Dict[str, Any]:
     """A fs_msgs/Track as dict; see `to_eufs` for the parameters.
 
-    Examples
-    --------
     >>> to_fs_track([[1, 2]])
     {'track': [{'location': {'x': 1.0, 'y': 2.0, 'z': 0.0}, 'color': 4}]}
     """
@@ -257,26 +207,13 @@ def from_pacsim(message: Any) -> Cones:
     if each cone is of one class with probability 1; small and big orange ones are orange. Else they are the
     probabilities, divided by their sum, with those of invisible and of time keeping added to unknown.
 
-    Parameters
-    ----------
-    message : object, dict or sequence
-        With a list `detections`, or with `left_lane`, `right_lane` and `unknown`, of landmarks that have
+    message: With a list `detections`, or with `left_lane`, `right_lane` and `unknown`, of landmarks that have
         `pose.pose.position`, `class_probabilities`, `detection_probability` and, in a track, `id`. If they know it,
         `pose.covariance` with 36 numbers, row by row: x, y, z and three angles.
+    Returns with confidences; with ids if each landmark has one.
+    Raises ValueError, naming the field that is missing; for other than seven classes, for a covariance of other than 36
+        numbers, and for probabilities that are negative or not finite.
 
-    Returns
-    -------
-    Cones
-        With confidences; with ids if each landmark has one.
-
-    Raises
-    ------
-    ValueError
-        Naming the field that is missing; for other than seven classes, for a covariance of other than 36 numbers, and
-        for probabilities that are negative or not finite.
-
-    Examples
-    --------
     >>> cones = from_pacsim(to_pacsim([[3, 1]], colors=["yellow"], confidences=[0.5]))
     >>> cones.colors.tolist(), cones.confidences.tolist(), cones.ids
     ([2], [0.5], None)
@@ -317,15 +254,9 @@ def to_pacsim(cones: ArrayLike, colors: Optional[ArrayLike] = None, confidences:
               ids: Optional[ArrayLike] = None) -> Dict[str, Any]:
     """A pacsim/PerceptionDetections as dict, without headers and covariances; see `to_eufs` for the first parameters.
 
-    Parameters
-    ----------
-    confidences : (N,) array_like of float, optional
-        By default 1.
-    ids : (N,) array_like of int, optional
-        With them the entries are landmarks, as pacsim/Track has them.
+    confidences: (N,), by default 1.
+    ids: (N,), with them the entries are landmarks, as pacsim/Track has them.
 
-    Examples
-    --------
     >>> to_pacsim([[3, 1]], colors=["blue"])["detections"][0]["class_probabilities"]
     [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]
     """

@@ -13,7 +13,6 @@ from ..theme import series_style
 from .speed import profile_figure, ratio
 
 FILE = "backends.jsonl"
-AGREEMENT = 1e-6
 _WARM = " warm"
 _SOLVE = {"scene": TEXT, "track": TEXT, "nearest": WHOLE, "backend": TEXT, "status": TEXT, "nodes": WHOLE, "latency_ms": NUMBER}
 
@@ -48,17 +47,10 @@ def _size(row, *more):
     return Cell(" ".join((_size_name(row["nearest"]), *more)).strip(), row["nearest"] or 10**6)
 
 
-def disagreements(solves):
-    """Scenes of one size in which two backends prove different optima, or one proves that there is none where
-    another proves an optimum; and the number of scenes that two of them decided."""
-    found = {}
-    for one in solves:
-        for scene, status, objective in zip(one.scene, one.status, one.objective):
-            if status in ("optimal", "infeasible"):
-                found.setdefault(scene, []).append(objective if status == "optimal" else np.inf)
-    shared = [values for values in found.values() if len(values) > 1]
-    return sum(not (max(values) == min(values) or max(values) - min(values) <= AGREEMENT) for values in shared), len(
-        shared)
+def _proven(one):
+    """The proven optima by scene; infinite where it is proven that there is no lane graph."""
+    return {scene: objective if status == "optimal" else np.inf
+            for scene, status, objective in zip(one.scene[one.is_decided], one.status[one.is_decided], one.objective[one.is_decided])}
 
 
 @Experiment
@@ -76,7 +68,7 @@ def exact_backends(results, published):
     figures, agreement = [], []
     for size in dict.fromkeys(one.nearest for one in cold):
         of_size = [one for one in cold if one.nearest == size]
-        agreement.append("n = {}: {} of {} scenes".format(_size_name(size), *disagreements(of_size)))
+        agreement.append("n = {}: {} of {} scenes".format(_size_name(size), *measures.disagreements(map(_proven, of_size))))
         figure, scenes = profile_figure(of_size, lambda i, _: series_style(i), lambda one: one.is_decided, "method")
         if len(of_size) > 1 and figure:
             figures.append(drawn(f"backends-profile-{_size_name(size)}", "The upper left curve is the fastest backend on most scenes. Share of "
