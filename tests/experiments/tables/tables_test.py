@@ -1,5 +1,6 @@
 """tables_test.py ROOT: how the figures of runs become tables, on figures made by hand, and that a page which says something else is found."""
 
+import importlib.util
 import json
 import os
 import re
@@ -227,15 +228,17 @@ class Solvers(unittest.TestCase):
 
 
 class BeamPicture(unittest.TestCase):
-    def test_a_point_lies_at_its_share(self):
-        self.assertFalse(beam_picture.has_figures({"rows": []}))
+    def test_a_picture_holds_its_figures(self):
+        self.assertEqual(beam_picture.points({"rows": []}), {})
         row = {"table": "beam", "beam": 5, "best_score": 0.8, "first_usable": 0.9, "iou": 1.0}
-        text = beam_picture.picture({"rows": [row, row | {"beam": 10}]})
-        # The lowest line is of 80 %, the highest of 100 %.
-        self.assertIn('<polyline points="210.0,280.0 470.0,280.0"', text)
-        self.assertIn('<polyline points="210.0,170.0 470.0,170.0"', text)
-        self.assertIn('<polyline points="210.0,60.0 470.0,60.0"', text)
-        self.assertIn(">10</text>", text)
+        stored = {"rows": [row, row | {"beam": 10, "iou": 0.5}]}
+        self.assertEqual(beam_picture.points(stored)["iou"], [[5, 100.0], [10, 50.0]])
+        shown = tables.read(tables.BEAM_PICTURE)
+        self.assertNotEqual(beam_picture.points_in(shown), beam_picture.points(stored))
+        if importlib.util.find_spec("matplotlib"):
+            text = beam_picture.picture(stored)
+            self.assertEqual(beam_picture.points_in(text), beam_picture.points(stored))
+            self.assertEqual(len(re.findall(">(?:5|10)</text>", text)), 2)  # the marks of the axis
 
 
 @unittest.skipUnless(shutil.which("git"), "there is no git")
