@@ -18,7 +18,7 @@ OPTIONS = ("*, nearest: Optional[int] = None, parameters: Optional[Union[str, Ma
 
 
 def function(doc, indent="", name=None):
-    own_name, _, rest = doc.splitlines()[0].partition("(")
+    own_name, _, rest = " ".join(doc.split("\n\n")[0].split()).partition("(")
     rest = rest.replace("**options", OPTIONS[3:] if "*, " in rest else OPTIONS)
     first = "self" + (", " if rest[0] != ")" else "") if indent else ""
     return f"{indent}def {name or own_name}({first}{rest}{' -> None' if name else ''}: ...\n"

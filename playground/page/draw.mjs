@@ -82,7 +82,8 @@ function drawLine(drawing, { points, closed, ...line }, color, label) {
   drawing.line([tip(Math.min(end.width_left_m, 3)), tip(-Math.min(end.width_right_m, 3))], { ...BAR, color });
   if (!label || trusted_m === Infinity) return;
   const [px, py] = view.at(xy(end));
-  drawing.text(`trusted ${trusted_m.toFixed(0)} m`, [px + 46 * Math.cos(end.heading_rad), py - 20 * Math.sin(end.heading_rad) + 4], { ...LABEL, color, align: "center" });
+  drawing.text(`trusted ${trusted_m.toFixed(0)} m`,
+    [px + 46 * Math.cos(end.heading_rad), py - 20 * Math.sin(end.heading_rad) + 4], { ...LABEL, color, align: "center" });
 }
 
 /** Where the handle is that turns the car [px]. */

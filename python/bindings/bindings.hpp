@@ -79,7 +79,7 @@ struct LaneObject {
     std::shared_ptr<const Scene> scene;
 };
 
-/// The arguments of a function, by the first line of its docstring, as Python has them behind `def`.
+/// The arguments of a function, by the first paragraph of its docstring, as Python has them behind `def`.
 struct Signature {
     struct Argument {
         std::string name;

@@ -170,7 +170,9 @@ limit.
 )";
 
 constexpr const char* kDetect =
-    R"(detect(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, confidences: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 50.0, *, covariances: Optional[ArrayLike] = None) -> Lane
+    R"(detect(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None,
+       confidences: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 50.0, *,
+       covariances: Optional[ArrayLike] = None) -> Lane
 
 The lane among cones.
 
@@ -269,7 +271,9 @@ std::optional<py::array_t<double>> course(PlannerObject& planner) {
 }
 
 constexpr const char* kPlanner =
-    R"(Planner(mission: str = "trackdrive", detector: str = "front-warm", laps: Optional[int] = None, *, max_age_s: float = 1.0, step_m: float = 0.5, smoothing_m: float = 1.75, max_gap_m: float = 5.5, default_width_m: float = 3.5, **options)
+    R"(Planner(mission: str = "trackdrive", detector: str = "front-warm", laps: Optional[int] = None, *,
+        max_age_s: float = 1.0, step_m: float = 0.5, smoothing_m: float = 1.75, max_gap_m: float = 5.5,
+        default_width_m: float = 3.5, **options)
 
 The path to drive in each frame of an event, from the start line to the stop.
 
@@ -299,7 +303,9 @@ True
 )";
 
 constexpr const char* kUpdate =
-    R"(update(cones: ArrayLike, pose: ArrayLike, time_s: float, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 20.0, *, confidences: Optional[ArrayLike] = None, covariances: Optional[ArrayLike] = None) -> Plan
+    R"(update(cones: ArrayLike, pose: ArrayLike, time_s: float, ids: Optional[ArrayLike] = None,
+       colors: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 20.0, *,
+       confidences: Optional[ArrayLike] = None, covariances: Optional[ArrayLike] = None) -> Plan
 
 The plan of the next frame.
 

@@ -139,7 +139,8 @@ Returns (M, 7), columns: s, the arc length from the car's foot point [m]; x, y [
 )";
 
 constexpr const char* kDrivable =
-    R"(drivable(step_m: float = 0.5, *, smoothing_m: float = 1.75, max_gap_m: float = 5.5, default_width_m: float = 3.5) -> DrivableLane
+    R"(drivable(step_m: float = 0.5, *, smoothing_m: float = 1.75, max_gap_m: float = 5.5,
+         default_width_m: float = 3.5) -> DrivableLane
 
 The centre line with the gaps that it bridges and the boundary that was inferred.
 

@@ -14,9 +14,9 @@
 namespace conelane::python {
 
 Signature::Signature(std::string_view doc) : name(doc.substr(0, doc.find('('))) {
-    const std::string line(doc.substr(0, doc.find('\n')));
+    const std::string signature(doc.substr(0, doc.find("\n\n")));
     py::dict names;
-    py::exec("from __future__ import annotations\ndef " + line + ": pass", names);  // types stay text
+    py::exec("from __future__ import annotations\ndef " + signature + ": pass", names);  // types stay text
     const py::module_ inspect = py::module_::import("inspect");
     const py::object empty = inspect.attr("Parameter").attr("empty");
     const py::object parameters = inspect.attr("signature")(names[name.c_str()]).attr("parameters");

@@ -79,7 +79,10 @@ py::dict parameters_as_dict(const std::string& name) {
 }
 
 constexpr const char* kSolveRld =
-    R"(solve_rld(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, confidences: Optional[ArrayLike] = None, *, parameters: Optional[Union[str, Mapping[str, Any]]] = None, pairing: Optional[str] = None, solver: str = 'path-pair', time_limit_ms: Optional[float] = None, absolute_gap: float = 1e-09) -> RldSolution
+    R"(solve_rld(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None,
+          confidences: Optional[ArrayLike] = None, *, parameters: Optional[Union[str, Mapping[str, Any]]] = None,
+          pairing: Optional[str] = None, solver: str = 'path-pair', time_limit_ms: Optional[float] = None,
+          absolute_gap: float = 1e-09) -> RldSolution
 
 The lane graph of least cost: RLD, solved to its proven optimum.
 

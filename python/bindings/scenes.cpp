@@ -94,7 +94,10 @@ std::vector<Track> load_tracks_warning(const std::string& spec) {
 }
 
 constexpr const char* kScene =
-    R"(Scene(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None, confidences: Optional[ArrayLike] = None, *, id: str = '', ground_truth: Optional[Tuple[ArrayLike, ArrayLike]] = None, closed: bool = False, track: str = '', covariances: Optional[ArrayLike] = None)
+    R"(Scene(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None,
+      confidences: Optional[ArrayLike] = None, *, id: str = '',
+      ground_truth: Optional[Tuple[ArrayLike, ArrayLike]] = None, closed: bool = False, track: str = '',
+      covariances: Optional[ArrayLike] = None)
 
 The input of one call of a detector, and the truth for scoring. Every attribute is a copy.
 
@@ -170,7 +173,9 @@ Warns (UserWarning) for each of the `warnings` of a track.
 )";
 
 constexpr const char* kGenerateScenes =
-    R"(generate_scenes(track: Track, *, false_positive_rate: float = 0.0, range_m: float = 30.0, every_m: float = 1.1, condition: Optional[str] = None, with_color: bool = False, seed: int = 0, noise_by_range: Optional[float] = None) -> List[Scene]
+    R"(generate_scenes(track: Track, *, false_positive_rate: float = 0.0, range_m: float = 30.0, every_m: float = 1.1,
+                condition: Optional[str] = None, with_color: bool = False, seed: int = 0,
+                noise_by_range: Optional[float] = None) -> List[Scene]
 
 What a car sees along a track, with the true lane.
 

@@ -34,8 +34,8 @@ def _table_by_rate(name, results, published, samples, shares, columns, note=""):
         rows += [printed[rate] | {"sample": None, "rate": rate}] if rate in printed else []
         rows += [shares(part) | {"sample": sample, "rate": rate} for sample in samples
                  if len(part := sample.where(np.abs(sample.rate - rate) < 1e-6))]
-    return table(name, [Column("method", method, "text"), column("false positives %", percent, "rate"), *(column(title, percent, key) for key, title in columns.items())], rows,
-                 note=note, is_published=lambda row: row["sample"] is None)
+    return table(name, [Column("method", method, "text"), column("false positives %", percent, "rate"),
+                        *(column(title, percent, key) for key, title in columns.items())], rows, note=note, is_published=lambda row: row["sample"] is None)
 
 
 @Experiment
