@@ -3,7 +3,6 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/output_stream.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/report/archive.hpp"
 
 #include <cerrno>
 #include <csignal>
