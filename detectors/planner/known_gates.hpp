@@ -26,8 +26,6 @@ class GateEvidence {
     /// Whether a gate was seen at the finish that belongs to start_line_m().
     [[nodiscard]] bool has_seen_finish() const { return has_seen_finish_; }
 
-    void clear();
-
   private:
     /// Evidence at one place along the lane.
     struct Place {

@@ -60,12 +60,6 @@ class KnownRegistration {
                                                           const Pose& expected, const SearchReach& reach = {},
                                                           const Deadline& deadline = Deadline()) const;
 
-    /// The registration of the list, if it has exactly one.
-    [[nodiscard]] std::optional<RegistrationFit> search(std::span<const SeenCone> cones,
-                                                        std::span<const SeenView> views, const Pose& car,
-                                                        const Pose& expected, const SearchReach& reach = {},
-                                                        const Deadline& deadline = Deadline()) const;
-
     /// Moves a registration onto the cones near the car, by at most about a meter. Directions that the cones
     /// do not determine are kept; `stiffness` is the weight of the old registration.
     [[nodiscard]] Registration refine(Registration registration, std::span<const SeenCone> cones,
@@ -82,6 +76,9 @@ class KnownRegistration {
         std::vector<float> nearness;
     };
     [[nodiscard]] Raster raster(double widening_m) const;
+    /// Sum over cones, whose places are in cells of the raster, moved by as many cells.
+    [[nodiscard]] float nearness(const Raster& raster, std::span<const Point> in_cells,
+                                 const Point& moved_cells) const;
     [[nodiscard]] std::vector<RegistrationFit> candidates(std::span<const SeenCone> cones, const Pose& car,
                                                           const Pose& expected, const SearchReach& reach,
                                                           const Deadline& deadline) const;

@@ -33,7 +33,6 @@ class SeenCones {
   public:
     void observe(const Frame& frame);
     [[nodiscard]] std::span<const SeenCone> cones() const { return cones_; }
-    void clear() { cones_.clear(); }
 
   private:
     std::vector<SeenCone> cones_;
