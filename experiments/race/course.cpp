@@ -3,10 +3,10 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/tracks/centre_line.hpp"
-#include "model/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -275,6 +275,32 @@ void measure(RaceCourse& course) {
     course.length_m = polyline_length_m(points, course.closed);
 }
 
+bool crosses(const std::vector<Point>& boundary, const Segment& way) {
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        const Segment edge{boundary[i], boundary[(i + 1) % boundary.size()]};
+        // Skips the boundary points that are far away, which are most of them.
+        if ((edge.from - way.from).squaredNorm() > 400.0 && (edge.to - way.from).squaredNorm() > 400.0 &&
+            (edge.to - edge.from).squaredNorm() < 100.0) {
+            continue;
+        }
+        if (segments_intersect(edge, way)) return true;
+    }
+    return false;
+}
+
+bool is_inside(const std::vector<Point>& polygon, const Point& point) {
+    bool inside = false;
+    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+        const Point& a = polygon[i];
+        const Point& b = polygon[j];
+        if ((a.y() > point.y()) != (b.y() > point.y()) &&
+            point.x() < (b.x() - a.x()) * (point.y() - a.y()) / (b.y() - a.y()) + a.x()) {
+            inside = !inside;
+        }
+    }
+    return inside;
+}
+
 }  // namespace
 
 RaceCourse circuit(const Track& track) {
@@ -381,6 +407,53 @@ RaceCourse varied_mission_course(Mission mission, std::uint64_t seed) {
     course.name = "varied " + course.name;
     measure(course);
     return course;
+}
+
+void CourseFoot::follow(const Point& point, double reach_m) {
+    const auto steps = static_cast<long>(std::ceil(reach_m / course_.step_m));
+    const auto middle = static_cast<long>(std::floor(at_m_ / course_.step_m));
+    double best_m = std::numeric_limits<double>::infinity();
+    double best_at_m = at_m_;
+    for (long i = middle - steps; i <= middle + steps; ++i) {
+        const auto from = place(i);
+        const auto to = place(i + 1);
+        if (!from || !to) continue;
+        const FootPoint foot = foot_point(point, {*from, *to});
+        if (foot.distance_m >= best_m) continue;
+        best_m = foot.distance_m;
+        best_at_m = (static_cast<double>(i) + foot.parameter) * course_.step_m;
+    }
+    distance_m_ = best_m;
+    at_m_ = best_at_m;
+}
+
+std::optional<Point> CourseFoot::place(long number) const {
+    const auto size = static_cast<long>(course_.line.size());
+    if (course_.closed)
+        return course_.line[static_cast<std::size_t>(((number % size) + size) % size)].position;
+    if (number < 0 || number >= size) return std::nullopt;
+    return course_.line[static_cast<std::size_t>(number)].position;
+}
+
+bool stays_in_ring(const TrackBoundaries& lane, const Segment& way) {
+    if (crosses(lane.left, way) || crosses(lane.right, way)) return false;
+    return is_inside(lane.left, way.to) != is_inside(lane.right, way.to);
+}
+
+bool leaves(const RaceCourse& course, const std::vector<Point>& path, double up_to_m, CourseFoot at) {
+    double along_m = 0.0;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double step_m = (path[i] - path[i - 1]).norm();
+        along_m += step_m;
+        if (along_m > up_to_m) return false;
+        if (course.half_width_m) {
+            at.follow(path[i], 2.0 + step_m);
+            if (at.distance_m() > *course.half_width_m) return true;
+        } else if (!stays_in_ring(course.lane, {path[i - 1], path[i]})) {
+            return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace conelane::experiments
