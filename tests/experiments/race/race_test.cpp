@@ -6,7 +6,6 @@
 #include "evaluation/scenes/condition.hpp"
 #include "evaluation/tracks/track_spec.hpp"
 #include "experiments/race/drivers.hpp"
-#include "experiments/race/vehicle.hpp"
 #include "tests/support/recorded_tracks.hpp"
 #include "tests/support/testing.hpp"
 

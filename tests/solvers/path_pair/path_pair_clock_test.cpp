@@ -5,7 +5,7 @@
 #include "conelane/scene.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/graph/timed_growth.hpp"
+#include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"

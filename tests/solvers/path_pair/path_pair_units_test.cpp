@@ -1,10 +1,9 @@
 // The units of path-pair: valid bounds, valid cliques, and the same legs as brute force finds.
 
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/path_pair/bound/clique_separation.hpp"
+#include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/leg_search.hpp"
-#include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "tests/support/cones_at.hpp"
@@ -84,7 +83,7 @@ struct SceneWithMultipliers {
     ResidualGraph residual;
     CliquePool cliques;
     Multipliers multipliers;
-    LegBounds bounds;
+    LegBounds bounds{clock};
     std::vector<double> edge_multiplier, reduced, start, end, forward, backward;
     std::vector<int> before, cycle;
     int raised = 0;
@@ -95,7 +94,7 @@ class Offers {
     Offers(const Scene& scene, const RldParameters& parameters) {
         SearchClock clock;
         graph.build(make_problem(scene, parameters), clock);
-        incumbent.reset(graph, 0.0);
+        incumbent.reset(0.0, 0.0);
     }
     bool offer(const std::vector<int>& first_cones, const std::vector<int>& second_cones) {
         return incumbent.offer(leg(first_cones), leg(second_cones));
@@ -107,7 +106,7 @@ class Offers {
     }
 
     ArcGraph graph;
-    Incumbent incumbent;
+    Incumbent incumbent{graph};
 };
 
 TEST(PathPairIncumbent, TakesLaneGraphsThatCostLess) {
@@ -225,7 +224,8 @@ TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
 /// Earlier walks are only a start: labels are the same from the walks of other costs, of another graph, and
 /// from none.
 TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
-    LegBounds bounds;
+    SearchClock clock;
+    LegBounds bounds(clock);
     std::vector<int> left_over;
     int started = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -264,7 +264,7 @@ TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
     residual.assign(graph, std::vector<char>{1, 0, 0, 0}, clock);
     Multipliers multipliers;
     multipliers.cone.assign(4, 0.0);
-    LegBounds bounds;
+    LegBounds bounds(clock);
     std::vector<double> edge_multiplier, reduced, forward;
     std::vector<int> before, cycle;
     int raised = 0;

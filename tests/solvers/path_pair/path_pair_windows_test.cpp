@@ -30,7 +30,7 @@ struct Graph {
         }
         whole.assign(arcs, system.kinds[0].start, clock);
         usable.assign(static_cast<std::size_t>(arcs.arc_count()), 1);
-        incumbent.reset(arcs, 0.0);
+        incumbent.reset(0.0, 1e-9);
     }
     [[nodiscard]] std::vector<int> leg(std::span<const int> cones) const {
         std::vector<int> leg;
@@ -50,7 +50,9 @@ struct Graph {
     LegSystem system;
     ResidualGraph whole;
     std::vector<char> usable;
-    Incumbent incumbent;
+    Incumbent incumbent{arcs};
+    IncumbentWindow window{arcs, system, whole};
+    PairBeam beam{arcs, system, clock};
 };
 
 std::size_t at(int index) {
@@ -66,8 +68,8 @@ TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
     for (const std::vector<int>& leg : legs) {
         for (const int arc : leg) s.usable[at(arc)] = 1;
     }
-    IncumbentWindow window;
-    window.assign(s.arcs, s.system, s.whole, s.usable);
+    IncumbentWindow& window = s.window;
+    window.assign(s.usable);
     window.restart(1);
     std::vector<int> arcs;
     for (const bool improved : {true, false, false}) {  // 6, tried again, and 7
@@ -98,9 +100,8 @@ TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
 TEST(PathPairBeam, FindsTheStraightLane) {
     const LaneGraphProblem problem = tests::straight_lane_problem();
     Graph s(problem);
-    PairBeam beam;
-    beam.begin(s.arcs, s.system, s.clock);
-    beam.run({1, 2}, s.incumbent, s.clock);
+    s.beam.find_first_steps();
+    s.beam.run({1, 2}, s.incumbent);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(problem, {}).objective, 1e-9);
 }
@@ -112,16 +113,15 @@ TEST(PathPairBeam, IsTheSameAfterOtherBeams) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Graph s(make_problem(tests::random_scene(seed, 30), {}));
         const auto cost = [&](PairBeam& beam, std::size_t width) {
-            s.incumbent.reset(s.arcs, 1e6);
-            beam.run({width, 4}, s.incumbent, s.clock);
+            s.incumbent.reset(1e6, 1e-9);
+            beam.run({width, 4}, s.incumbent);
             return s.incumbent.cutoff();
         };
-        PairBeam beam;
-        beam.begin(s.arcs, s.system, s.clock);
+        s.beam.find_first_steps();
         for (const std::size_t width : {2, 64, 1, 8}) {
-            PairBeam fresh;
-            fresh.begin(s.arcs, s.system, s.clock);
-            EXPECT_EQ(cost(beam, width), cost(fresh, width));
+            PairBeam fresh(s.arcs, s.system, s.clock);
+            fresh.find_first_steps();
+            EXPECT_EQ(cost(s.beam, width), cost(fresh, width));
             found += s.incumbent.found() ? 1 : 0;
         }
     }
@@ -137,10 +137,9 @@ TEST(PathPairBeam, FindsLaneGraphsAndOftenTheBest) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 9), {});
         const RldReport best = exhaustive->solve(problem, {});
         Graph s(problem);
-        s.incumbent.reset(s.arcs, 1e6);
-        PairBeam beam;
-        beam.begin(s.arcs, s.system, s.clock);
-        beam.run({64, 16}, s.incumbent, s.clock);
+        s.incumbent.reset(1e6, 1e-9);
+        s.beam.find_first_steps();
+        s.beam.run({64, 16}, s.incumbent);
         if (!best.objective) {
             EXPECT_FALSE(s.incumbent.found());
             continue;
@@ -160,13 +159,12 @@ TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Graph s(make_problem(tests::random_scene(seed, 30), {}));
-        PairBeam beam;
-        beam.begin(s.arcs, s.system, s.clock);
-        beam.run({16, 4}, s.incumbent, s.clock);
+        s.beam.find_first_steps();
+        s.beam.run({16, 4}, s.incumbent);
         if (!s.incumbent.found()) continue;
         const Legs& legs = s.incumbent.legs();
-        IncumbentWindow window;
-        window.assign(s.arcs, s.system, s.whole, s.usable);
+        IncumbentWindow& window = s.window;
+        window.assign(s.usable);
         window.restart(10 + seed);
         std::vector<int> arcs;
         while (window.next(legs, arcs)) {
@@ -212,10 +210,10 @@ struct Stopped {
 Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     const LaneGraphProblem problem = make_problem(scene, {});
     Graph s(problem);
-    BranchAndBound search(s.arcs, s.incumbent, options);
     tests::FakeSearchClock clock(looks + 1);
+    BranchAndBound search(s.arcs, s.system, s.incumbent, options, clock);
     Stopped result;
-    result.outcome = search.run(s.system, 1e-9, clock);
+    result.outcome = search.run();
     result.cost = s.incumbent.cutoff();
     if (s.incumbent.found()) {
         LaneGraph lane;
