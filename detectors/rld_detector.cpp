@@ -79,8 +79,9 @@ class RldDetector : public LaneDetector {
         if (part.left.empty() || part.right.empty()) {
             return solve_by_any_d_near(nearest_ahead(scene, *cones.nearest), deadline);
         }
-        answer.uncut = UncutLane{std::move(answer.lane), answer.optimality};
-        answer.optimality.reset();
+        if (!answer.solved) answer.solved.emplace();
+        answer.solved->lane = std::move(answer.lane);
+        answer.solved->optimality = std::exchange(answer.optimality, {});
         answer.lane = std::move(part);
         return answer;
     }
@@ -94,7 +95,7 @@ class RldDetector : public LaneDetector {
             answer = solve(seen, other, deadline.remaining_ms());
             if (answer.status != LaneStatus::found) continue;
             answer.optimality.reset();
-            answer.other_d_near_m = d_near_m;
+            answer.solved = SolvedLane{.lane = answer.lane, .d_near_m = d_near_m};
             answer.message =
                 "by another d_near, because no lane graph is feasible with that of the parameters";
         }

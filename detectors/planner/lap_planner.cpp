@@ -231,7 +231,7 @@ LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {
         }
     };
     rename(answer.lane);
-    if (answer.uncut) rename(answer.uncut->lane);
+    if (answer.solved) rename(answer.solved->lane);
     if (answer.enumeration) {
         for (LaneCandidate& candidate : answer.enumeration->candidates) rename(candidate.lane);
     }

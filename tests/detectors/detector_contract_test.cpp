@@ -77,7 +77,7 @@ void expect_consistent(const Scene& scene, const LaneAnswer& answer, bool may_be
         EXPECT_TRUE(answer.trusted_m);
     } else {
         EXPECT_EQ(answer.lane, Lane{});
-        EXPECT_FALSE(answer.uncut);
+        EXPECT_FALSE(answer.solved);
         EXPECT_FALSE(answer.trusted_m);
     }
     if (answer.status == LaneStatus::stopped) {

@@ -1,9 +1,7 @@
 // Acceleration and skidpad through the planner: its plans from the start to the stop, and in frames whose
 // cones say nothing.
 
-#include "detectors/planner/known_course_planner.hpp"
-
-#include "conelane/invalid_input.hpp"
+#include "detectors/planner/planners.hpp"
 #include "tests/detectors/planner/known_event.hpp"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
-#include "detectors/planner/path_memory.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/straight_line.hpp"
 

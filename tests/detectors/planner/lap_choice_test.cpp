@@ -4,7 +4,7 @@
 #include "conelane/planner.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
-#include "detectors/planner/lap_planner.hpp"
+#include "detectors/planner/planners.hpp"
 #include "tests/support/planner_frames.hpp"
 
 #include <cmath>

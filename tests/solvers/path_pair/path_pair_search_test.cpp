@@ -2,8 +2,8 @@
 // multipliers.
 
 #include "solvers/path_pair/bound/multipliers.hpp"
-#include "solvers/path_pair/search/node_ascent.hpp"
 #include "solvers/path_pair/search/node.hpp"
+#include "solvers/path_pair/search/node_ascent.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/testing.hpp"

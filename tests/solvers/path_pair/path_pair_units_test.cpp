@@ -1,9 +1,9 @@
 // The units of path-pair: valid bounds, valid cliques, and the same legs as brute force finds.
 
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/leg_search.hpp"
+#include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "tests/support/cones_at.hpp"
