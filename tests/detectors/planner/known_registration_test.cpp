@@ -5,15 +5,9 @@
 
 #include "detectors/planner/known_gates.hpp"
 #include "tests/detectors/planner/known_event.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <random>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

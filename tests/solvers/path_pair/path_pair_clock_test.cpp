@@ -9,6 +9,7 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
@@ -24,12 +25,6 @@ LaneGraphProblem dense_problem() {
         }
     }
     return make_problem(scene, {});
-}
-
-std::vector<char> near_cones(const ArcGraph& graph) {
-    std::vector<char> near;
-    for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
-    return near;
 }
 
 TEST(PathPairClock, IsCheckedWhileTheArcGraphIsMade) {
@@ -54,7 +49,7 @@ TEST(PathPairClock, IsCheckedWhileTheResidualGraphIsMade) {
     SearchClock no_limit;
     ArcGraph graph;
     ASSERT_TRUE(graph.build(problem, no_limit));
-    const std::vector<char> near = near_cones(graph);
+    const std::vector<char> near = tests::near_to_far(graph).kinds[0].start;
     tests::FakeSearchClock clock;
     ResidualGraph whole;
     EXPECT_TRUE(whole.assign(graph, near, clock));

@@ -18,6 +18,7 @@
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/cones_at.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 #include "tests/support/testing.hpp"
@@ -31,12 +32,8 @@ constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 struct Frontiers {
     Frontiers(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
         graph.build(problem, clock);
-        LegSystem::Kind& kind = system.kinds[0];
-        for (int cone = 0; cone < graph.cone_count(); ++cone) {
-            kind.start.push_back(graph.near(cone) ? 1 : 0);
-            kind.end.push_back(graph.near(cone) ? 0 : 1);
-        }
-        residual.assign(graph, kind.start, clock);
+        system = tests::near_to_far(graph);
+        residual.assign(graph, system.kinds[0].start, clock);
         decisions.reset(graph);
         boost::random::mt19937_64 random(seed);
         for (int cone = 0; cone < graph.cone_count(); ++cone) {
@@ -77,30 +74,30 @@ struct Frontiers {
         const std::function<void(int)> extend = [&](int a) {
             for (const int other : leg) {
                 if (graph.incompatible(residual.edge(other), residual.edge(a)) ||
-                    residual.tail[at(other)] == residual.head[at(a)]) {
+                    residual.tail[to_index(other)] == residual.head[to_index(a)]) {
                     return;
                 }
             }
             leg.push_back(a);
-            if (!graph.near(residual.head[at(a)])) all.push_back(leg);
-            for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
-                extend(residual.out_arc[at(p)]);
+            if (!graph.near(residual.head[to_index(a)])) all.push_back(leg);
+            for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p) {
+                extend(residual.out_arc[to_index(p)]);
             }
             leg.pop_back();
         };
         for (int a = 0; a < residual.size(); ++a) {
-            if (graph.near(residual.tail[at(a)])) extend(a);
+            if (graph.near(residual.tail[to_index(a)])) extend(a);
         }
         return all;
     }
 
     /// No cone and no incompatible edges in common.
     [[nodiscard]] bool are_pair(const std::vector<int>& first, const std::vector<int>& second) const {
-        std::set<int> cones{residual.tail[at(first.front())]};
-        for (const int a : first) cones.insert(residual.head[at(a)]);
-        if (cones.contains(residual.tail[at(second.front())])) return false;
+        std::set<int> cones{residual.tail[to_index(first.front())]};
+        for (const int a : first) cones.insert(residual.head[to_index(a)]);
+        if (cones.contains(residual.tail[to_index(second.front())])) return false;
         return std::ranges::all_of(second, [&](int b) {
-            return !cones.contains(residual.head[at(b)]) && std::ranges::none_of(first, [&](int a) {
+            return !cones.contains(residual.head[to_index(b)]) && std::ranges::none_of(first, [&](int a) {
                 return graph.incompatible(residual.edge(a), residual.edge(b));
             });
         });
@@ -110,8 +107,6 @@ struct Frontiers {
         const auto found = std::ranges::find(residual.arc, graph.arc(from, to));
         return static_cast<int>(found - residual.arc.begin());
     }
-
-    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
     LaneGraphProblem problem;
     tests::FakeSearchClock clock;
@@ -207,7 +202,7 @@ TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
 TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
     Frontiers s(tests::straight_lane_problem(), 1);
     const auto count = static_cast<std::size_t>(s.residual.size());
-    const auto last = static_cast<std::size_t>(s.arc(4, 6));
+    const auto last = to_index(s.arc(4, 6));
     std::vector<double> end(count, kUnreachable);
     end[last] = 0.0;
     std::vector<char> usable(count, 1);
@@ -215,7 +210,7 @@ TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
     LegBounds bounds(s.clock);
     const std::vector<double> nothing(count, 0.0);
     bounds.backward(s.residual, nothing, end, usable, label);
-    EXPECT_EQ(label[static_cast<std::size_t>(s.arc(2, 4))], 0.0);
+    EXPECT_EQ(label[to_index(s.arc(2, 4))], 0.0);
     usable[last] = 0;
     bounds.backward(s.residual, nothing, end, usable, label);
     EXPECT_EQ(label, std::vector<double>(count, kUnreachable));

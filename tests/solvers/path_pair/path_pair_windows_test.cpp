@@ -12,6 +12,7 @@
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 #include "tests/support/testing.hpp"
@@ -24,10 +25,7 @@ using Legs = std::array<std::vector<int>, 2>;
 struct Graph {
     explicit Graph(const LaneGraphProblem& problem) {
         arcs.build(problem, clock);
-        for (int cone = 0; cone < arcs.cone_count(); ++cone) {
-            system.kinds[0].start.push_back(arcs.near(cone) ? 1 : 0);
-            system.kinds[0].end.push_back(arcs.near(cone) ? 0 : 1);
-        }
+        system = tests::near_to_far(arcs);
         whole.assign(arcs, system.kinds[0].start, clock);
         usable.assign(static_cast<std::size_t>(arcs.arc_count()), 1);
         incumbent.reset(0.0, 1e-9);
@@ -55,10 +53,6 @@ struct Graph {
     PairBeam beam{arcs, system, clock};
 };
 
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
-
 // No arc of the lane leaves 6 or 7, so windows around them are empty and nothing changes. From 4, one arc
 // leads to 6: the left leg may end anywhere behind it.
 TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
@@ -66,7 +60,7 @@ TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
     const Legs legs{s.leg(std::vector<int>{0, 2, 4, 6}), s.leg(std::vector<int>{1, 3, 5, 7})};
     std::ranges::fill(s.usable, char{0});
     for (const std::vector<int>& leg : legs) {
-        for (const int arc : leg) s.usable[at(arc)] = 1;
+        for (const int arc : leg) s.usable[to_index(arc)] = 1;
     }
     IncumbentWindow& window = s.window;
     window.assign(s.usable);
@@ -170,14 +164,14 @@ TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
         while (window.next(legs, arcs)) {
             EXPECT_TRUE(std::ranges::is_sorted(arcs));
             std::vector<int> others;
-            for (const int a : arcs) others.push_back(s.whole.arc[at(a)]);
+            for (const int a : arcs) others.push_back(s.whole.arc[to_index(a)]);
             for (const std::vector<int>& leg : legs) {
                 for (const int arc : leg) EXPECT_EQ(std::erase(others, arc), 1U);
             }
             with_others += others.empty() ? 0 : 1;
             const auto expect_fixed = [&](const std::vector<char>& ends, const std::vector<char>& all,
                                           int cone, int arc) {
-                EXPECT_NE(ends[at(cone)], 0);
+                EXPECT_NE(ends[to_index(cone)], 0);
                 if (ends == all) return;
                 EXPECT_EQ(Graph::marked(ends).size(), 1U);
                 ++fixed_ends;
