@@ -3,7 +3,6 @@
 #include "detectors/planner/known_gates.hpp"
 #include "detectors/planner/known_registration.hpp"
 #include "detectors/planner/planners.hpp"
-#include "detectors/planner/seen_cones.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "detectors/planner/known_registration.hpp"
-#include "detectors/planner/seen_cones.hpp"
 
 #include <cstddef>
 #include <vector>
