@@ -134,11 +134,11 @@ void BranchAndBound::restart(MultiplierStages* stages) {
     decisions_.reset(graph_);
     second_leg_.reset();
     ascent_.restart(stages);
-    std::vector<char> starting = system_.kinds[0].start;
-    for (std::size_t cone = 0; cone < starting.size(); ++cone) {
-        if (system_.kind_count == 2 && system_.kinds[1].start[cone] != 0) starting[cone] = 1;
+    starting_ = system_.kinds[0].start;
+    for (std::size_t cone = 0; cone < starting_.size(); ++cone) {
+        if (system_.kind_count == 2 && system_.kinds[1].start[cone] != 0) starting_[cone] = 1;
     }
-    root_.graph.assign(graph_, starting, clock_);
+    root_.graph.assign(graph_, starting_, clock_);
     root_.restart(graph_, 0);
     improver_.restart();
     queue_.clear();

@@ -69,6 +69,7 @@ class BranchAndBound {
     Brancher brancher_;
     NodeQueue queue_;
     Node root_;
+    std::vector<char> starting_;  ///< by cone: a leg may start there
     std::int64_t nodes_ = 0;
 };
 
