@@ -2,16 +2,7 @@
 
 #include "detectors/planner/known_course.hpp"
 #include "tests/detectors/planner/known_event.hpp"
-
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,4 +1,4 @@
-#include "solvers/path_pair/search/node_queue.hpp"
+#include "solvers/path_pair/search/node.hpp"
 
 #include <algorithm>
 #include <functional>
