@@ -36,7 +36,7 @@ class Builder {
           cos_(cos(Real(scene.pose.yaw_rad))),
           sin_(sin(Real(scene.pose.yaw_rad))) {
         without_costs_ = parameters;
-        without_costs_.w_v = 0.0;
+        without_costs_.facing_weight = 0.0;
         without_costs_.w_color = 0.0;
         without_costs_.learned_costs.reset();
         if (p_.learned_costs) learned_.emplace(scene_, p_);
@@ -102,7 +102,7 @@ class Builder {
             }
         }
         for (const Edge& edge : result_.edges) measured_.push_back(measured(edge));
-        if (p_.w_v > 0.0) find_facing_edges();
+        if (p_.facing_weight > 0.0) find_facing_edges();
         for (std::size_t e = 0; e < result_.edges.size(); ++e)
             result_.edge_cost.push_back(rounded_down(edge_cost(e)));
     }
@@ -129,7 +129,7 @@ class Builder {
         }
         Real cost = Real(p_.w_s) * fourth((measured_[e].length - Real(p_.d_e)) / Real(p_.d_t)) +
                     Real(p_.w_p) * fourth(across(measured_[e].vector) / car_distance) - benefit;
-        if (p_.w_v > 0.0) cost += Real(p_.w_v) * facing_cost(measured_[e]);
+        if (p_.facing_weight > 0.0) cost += Real(p_.facing_weight) * facing_cost(measured_[e]);
         const Real faults = p_.w_color > 0.0 || learned_ ? color_faults(edge) : Real(0);
         if (p_.w_color > 0.0) cost += Real(p_.w_color) * faults;
         if (learned_) cost += learned_->edge(edge.i, edge.j, faults);
@@ -146,12 +146,13 @@ class Builder {
             }
             const Vector way{other.middle.x - edge.middle.x, other.middle.y - edge.middle.y};
             const Real ahead = dot(way, edge.vector) / edge.length;
-            const Real off_width = abs(wedge(edge.vector, way)) / edge.length - Real(p_.d_w);
+            const Real off_width = abs(wedge(edge.vector, way)) / edge.length - Real(p_.lane_width_m);
             const Real turned =
-                wedge(edge.vector, other.vector) / (edge.length * other.length * Real(p_.theta_v));
-            const Real longer = (other.length - edge.length) / Real(p_.d_l);
-            best = std::min(best, Real((square(ahead) + square(off_width)) / square(Real(p_.d_v)) +
-                                       square(turned) + square(longer)));
+                wedge(edge.vector, other.vector) / (edge.length * other.length * Real(p_.facing_angle_rad));
+            const Real longer = (other.length - edge.length) / Real(p_.facing_length_m);
+            best =
+                std::min(best, Real((square(ahead) + square(off_width)) / square(Real(p_.facing_distance_m)) +
+                                    square(turned) + square(longer)));
         }
         return best;
     }
@@ -160,7 +161,8 @@ class Builder {
     /// other side have a fault.
     [[nodiscard]] Real color_faults(const Edge& edge) const {
         RldParameters colors = p_;
-        colors.w_s = colors.w_t = colors.w_p = colors.w_b = colors.w_u = colors.w_v = colors.w_n = 0.0;
+        colors.w_s = colors.w_t = colors.w_p = colors.w_b = colors.unevenness_weight = colors.facing_weight =
+            colors.near_end_weight = 0.0;
         colors.w_color = 1.0;
         colors.learned_costs.reset();
         const auto is_fault_in = [&](const Scene& scene) {
@@ -222,7 +224,8 @@ class Builder {
         const Vector on = from_to(result_.head(a), result_.head(b));
         const Real angle = atan2(abs(wedge(back, on)), dot(back, on));
         Real cost = Real(p_.w_t) * fourth((angle - Real(p_.theta_e)) / Real(p_.theta_t)) +
-                    Real(p_.w_u) * square((measured_[a / 2].length - measured_[b / 2].length) / Real(p_.d_t));
+                    Real(p_.unevenness_weight) *
+                        square((measured_[a / 2].length - measured_[b / 2].length) / Real(p_.d_t));
         if (learned_) cost += learned_->turn(result_.tail(a), result_.head(a), result_.head(b));
         return cost;
     }
@@ -235,10 +238,10 @@ class Builder {
             const Vector place = from_car(cone);
             const bool aside = p_.d_side > 0.0 && across(place) > Real(p_.d_side) + tie;
             result_.near.push_back(!aside && place.length() <= Real(p_.d_near) + tie);
-            const Real off = (across(place) - Real(p_.d_w) / 2) / Real(p_.d_t);
+            const Real off = (across(place) - Real(p_.lane_width_m) / 2) / Real(p_.d_t);
             const Real fit = std::max(Real(0), Real(1 - square(off)));
             const bool is_near = result_.near.back();
-            Real cost = is_near ? Real(-Real(p_.w_n) * fit) : Real(0);
+            Real cost = is_near ? Real(-Real(p_.near_end_weight) * fit) : Real(0);
             if (learned_) cost += is_near ? learned_->near_end(cone) : learned_->far_end(cone);
             result_.end_cost.push_back(is_near || learned_ ? rounded_down(cost) : Exact(0));
         }

@@ -1,7 +1,7 @@
 #include "graph_search/clc/lane_features.hpp"
 
+#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/lane_width.hpp"
-#include "graph_search/clc/left_right.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,14 +93,13 @@ constexpr std::array<std::string_view, kLaneFeatureCount> kNames = [] {
     return names;
 }();
 
-/// Distance of `middle`, across the chord of its neighbours, from the cubic through the two points before and
-/// the two after it at even steps [m].
-double offset_m(const Point& second_before, const Point& before, const Point& middle, const Point& after,
-                const Point& second_after) {
-    const Point expected = (4.0 * (before + after) - (second_before + second_after)) / 6.0;
-    const Point chord = after - before;
+/// Distance of the third of five points along a boundary, across the chord of its neighbours, from the cubic
+/// through the other four at even steps [m].
+double offset_m(const std::array<Point, 5>& along) {
+    const Point expected = (4.0 * (along[1] + along[3]) - (along[0] + along[4])) / 6.0;
+    const Point chord = along[3] - along[1];
     const double chord_m = chord.norm();
-    return chord_m == 0.0 ? 0.0 : std::abs(cross(chord, middle - expected)) / chord_m;
+    return chord_m == 0.0 ? 0.0 : std::abs(cross(chord, along[2] - expected)) / chord_m;
 }
 
 double curvature(double turned_rad, double length_m) {
@@ -111,11 +110,6 @@ double curvature(double turned_rad, double length_m) {
 
 std::span<const std::string_view> lane_feature_names() {
     return kNames;
-}
-
-double Moments::variance() const {
-    if (count == 0.0) return 0.0;
-    return std::max(0.0, mean_of_squares() - mean() * mean());
 }
 
 PaperFeatures paper_features(std::span<const Point> left, std::span<const Point> right, bool closed) {
@@ -211,7 +205,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         }
         if (own.vertices > 3) {
             step.offset_m =
-                offset_m(own.before_tip[2], own.before_tip[1], own.before_tip[0], tip_[side], point);
+                offset_m({own.before_tip[2], own.before_tip[1], own.before_tip[0], tip_[side], point});
         }
         own.turns.add(step.turn_rad);
         own.last_turn_rad = step.turn_rad;
@@ -219,7 +213,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         start_skew_ = std::max(start_skew_, (direction - heading_).norm());
     }
     if (facing.vertices > 1) step.skew = (direction - facing.direction).norm();
-    step.cones = neighbourhood(graph, vertex, tip_[side], facing_tip, point);
+    step.cones = neighbourhood(graph, vertex, {.tip = tip_[side], .point = point, .facing = facing_tip});
     // The length up to the beginning of the step.
     const bool is_near = own.segment_lengths.sum <= kNearPart_m;
     add(step, side, whole_);

@@ -1,7 +1,7 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 
-#include "graph_search/clc/lane_closing.hpp"
-#include "graph_search/clc/left_right.hpp"
+#include "graph_search/clc/deciders.hpp"
+#include "graph_search/clc/lane_constraints.hpp"
 
 #include <algorithm>
 
@@ -181,18 +181,18 @@ void PathPairEnumeration::begin(const SearchGraph& graph, StartPair start, const
     for (std::vector<std::uint8_t>& side : on_path_) side.assign(graph.vertex_count(), 0);
     on_path_[kLeft][start.left] = 1;
     on_path_[kRight][start.right] = 1;
-    Call first{
-        {next_vertex_->after_start(start.left, heading), next_vertex_->after_start(start.right, heading)},
-        {0, 0},
-        0,
-        {kNoVertex, kNoVertex},
-        {start.left, start.right},
-        {heading, heading},
-        {0.0, 0.0},
-        PathPairFingerprint(start),
-        {},
-        pairs.add_step(PathPairs::kNone, kLeft, start.left),
-        kLeft};
+    Call first{.unvisited = {next_vertex_->after_start(start.left, heading),
+                             next_vertex_->after_start(start.right, heading)},
+               .tried = {0, 0},
+               .discrepancies = 0,
+               .visited_early = {kNoVertex, kNoVertex},
+               .last = {start.left, start.right},
+               .direction = {heading, heading},
+               .length_m = {0.0, 0.0},
+               .fingerprint = PathPairFingerprint(start),
+               .growth = {},
+               .step = pairs.add_step(PathPairs::kNone, kLeft, start.left),
+               .pushed = kLeft};
     first.step = pairs.add_step(first.step, kRight, start.right);
     if (rules_.with_features) first.growth.start(graph, start.left, start.right, heading);
     calls_.assign(1, first);

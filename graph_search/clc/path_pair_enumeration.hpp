@@ -1,9 +1,8 @@
 #pragma once
 
+#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/lane_features.hpp"
-#include "graph_search/clc/next_vertex.hpp"
-#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "graph_search/shared/search_graph.hpp"
 
