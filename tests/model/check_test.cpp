@@ -189,10 +189,10 @@ TEST(Check, ConfidencesOfBothConesScaleTheBenefit) {
 /// The near ends are 1.75 m beside the axis, half of the usual width is 1.8 m.
 TEST(Check, NearEndsBesideTheCarEarnABenefit) {
     RldParameters parameters;
-    parameters.w_n = 0.5;
+    parameters.near_end_weight = 0.5;
     EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0 - 2.0 * 0.5 * (1.0 - std::pow(0.05 / 1.7, 2)),
                 kRounding);
-    parameters.d_w = 10.0;  // far off: no benefit, and no cost
+    parameters.lane_width_m = 10.0;  // far off: no benefit, and no cost
     EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0, kRounding);
 }
 
@@ -202,7 +202,7 @@ TEST(Check, UnevenSpacingCosts) {
     const double spacing = 0.4 * std::pow(1.0 / 1.7, 4);
     RldParameters parameters;
     EXPECT_NEAR(objective(scene, parameters), -4.0 + spacing, kRounding);
-    parameters.w_u = 2.0;
+    parameters.unevenness_weight = 2.0;
     EXPECT_NEAR(objective(scene, parameters), -4.0 + spacing + 2.0 * std::pow(1.0 / 1.7, 2), kRounding);
 }
 

@@ -139,7 +139,7 @@ TEST(LaneGraphProblem, TurnsCostTheirAngleAndTheSharpestAreForbidden) {
 /// gains nothing: the turn there costs what the two edges gain.
 TEST(LaneGraphProblem, NearEndsBesideTheCarEarnABenefit) {
     RldParameters parameters;
-    parameters.w_n = 0.5;
+    parameters.near_end_weight = 0.5;
     const LaneGraphProblem problem = make_problem(six_cone_lane(), parameters);
     const double fit = 1.0 - std::pow(0.05 / 1.7, 2);
     EXPECT_NEAR(edge(problem, 0, 1).cost, -1.0 - 0.5 * (fit + fit), kRounding);
@@ -152,7 +152,7 @@ TEST(LaneGraphProblem, UnevenSpacingCosts) {
     Scene scene = six_cone_lane();
     scene.cones[2].position.x() += 1.0;
     RldParameters parameters;
-    parameters.w_u = 2.0;
+    parameters.unevenness_weight = 2.0;
     EXPECT_NEAR(turn(make_problem(scene, parameters), 0, 1, 2).cost, 2.0 * std::pow(1.0 / 1.7, 2), kRounding);
 }
 

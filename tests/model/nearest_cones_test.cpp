@@ -35,12 +35,12 @@ TEST(NearestCones, AreCountedFromEitherEnd) {
     RldParameters parameters;
     parameters.s_crit = 20.0;
     EXPECT_TRUE(allowed(line, parameters, 0, 3)) << "0 is no limit";
-    parameters.k_edge = 3.0;
+    parameters.nearest_of_edge = 3.0;
     EXPECT_TRUE(allowed(line, parameters, 0, 3));
-    parameters.k_edge = 2.0;
+    parameters.nearest_of_edge = 2.0;
     EXPECT_FALSE(allowed(line, parameters, 0, 3));
     EXPECT_TRUE(allowed(line, parameters, 0, 2));
-    parameters.k_edge = 1.0;
+    parameters.nearest_of_edge = 1.0;
     EXPECT_TRUE(allowed(line, parameters, 0, 1));
     EXPECT_TRUE(allowed(line, parameters, 1, 2)) << "1 is the nearest of 2, though 0 is nearer to 1 than 2";
     EXPECT_TRUE(allowed(line, parameters, 2, 3)) << "2 is the nearest of 3";
@@ -52,7 +52,7 @@ TEST(NearestCones, AreCountedFromEitherEnd) {
 TEST(NearestCones, AtTheSameDistanceAreAllAmongTheNearest) {
     const Scene star = cones_at({{0.0, 0.0}, {3.2, 0.0}, {0.0, 3.2}, {-3.2, 0.0}, {0.0, -3.2}});
     RldParameters parameters;
-    parameters.k_edge = 1.0;
+    parameters.nearest_of_edge = 1.0;
     for (std::size_t ray = 1; ray < star.cones.size(); ++ray) EXPECT_TRUE(allowed(star, parameters, 0, ray));
 }
 
@@ -60,12 +60,12 @@ TEST(NearestCones, HaveALimitOfTheirOwnOverGaps) {
     const Scene row = cones_at({{-3.2, 0.0}, {0.0, 0.0}, {6.4, 0.0}, {9.6, 0.0}});
     RldParameters parameters;
     parameters.d_gap = 7.0;
-    parameters.k_edge = 1.0;
+    parameters.nearest_of_edge = 1.0;
     ASSERT_TRUE(allowed(row, parameters, 1, 2));
     EXPECT_TRUE(allowed(row, parameters, 1, 2)->gap);
-    parameters.k_gap = 1.0;
+    parameters.nearest_of_gap = 1.0;
     EXPECT_FALSE(allowed(row, parameters, 1, 2)) << "both have a nearer neighbour behind them";
-    parameters.k_gap = 2.0;
+    parameters.nearest_of_gap = 2.0;
     EXPECT_TRUE(allowed(row, parameters, 1, 2));
 }
 
@@ -79,8 +79,8 @@ TEST(NearestCones, AreThoseOfTheDefinition) {
         parameters.d_gap = 9.0;
         parameters.theta_gap = 0.7;
         const LaneGraphProblem unlimited = make_problem(scene, parameters);
-        parameters.k_edge = static_cast<double>(1 + seed % 4);
-        parameters.k_gap = static_cast<double>(2 + seed % 5);
+        parameters.nearest_of_edge = static_cast<double>(1 + seed % 4);
+        parameters.nearest_of_gap = static_cast<double>(2 + seed % 5);
         const LaneGraphProblem limited = make_problem(scene, parameters);
         const auto distance = [&](std::size_t a, std::size_t b) {
             return (scene.cones[a].position - scene.cones[b].position).norm();
@@ -93,7 +93,7 @@ TEST(NearestCones, AreThoseOfTheDefinition) {
         };
         std::vector<Edge> expected;
         for (const ProblemEdge& edge : unlimited.edges) {
-            const double k = edge.gap ? parameters.k_gap : parameters.k_edge;
+            const double k = edge.gap ? parameters.nearest_of_gap : parameters.nearest_of_edge;
             const bool kept = rank(edge.i, edge.j) < k || rank(edge.j, edge.i) < k;
             if (kept) expected.push_back({edge.i, edge.j});
             excluded += kept ? 0 : 1;
@@ -113,11 +113,11 @@ TEST(NearestCones, ChangeNoCost) {
         const Scene scene = tests::random_scene(seed, 12);
         RldParameters parameters;
         parameters.d_gap = 9.0;
-        parameters.w_v = 0.7;
+        parameters.facing_weight = 0.7;
         parameters.learned_costs = tests::random_learned_costs(seed, 4);
         const LaneGraphProblem unlimited = make_problem(scene, parameters);
-        parameters.k_edge = 3.0;
-        parameters.k_gap = 4.0;
+        parameters.nearest_of_edge = 3.0;
+        parameters.nearest_of_gap = 4.0;
         const LaneGraphProblem limited = make_problem(scene, parameters);
         ASSERT_LT(limited.edges.size(), unlimited.edges.size());
         for (const ProblemEdge& edge : limited.edges) {

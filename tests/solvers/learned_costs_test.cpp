@@ -132,7 +132,7 @@ TEST(LearnedCosts, OfTheProblemAreThoseOfTheNetworks) {
         const Scene scene = tests::random_scene(seed, 12);
         RldParameters parameters;
         parameters.d_gap = 9.0;
-        parameters.w_n = 0.5;
+        parameters.near_end_weight = 0.5;
         const LaneGraphProblem plain = make_problem(scene, parameters);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7);
         const LearnedCosts& costs = *parameters.learned_costs;

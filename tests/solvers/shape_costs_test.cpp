@@ -19,11 +19,11 @@ using tests::cones_at;
 RldParameters facing_parameters() {
     RldParameters parameters;
     parameters.w_s = parameters.w_t = parameters.w_p = parameters.w_b = 0.0;
-    parameters.w_v = 1.0;
-    parameters.d_w = 4.0;
-    parameters.d_v = 2.0;
-    parameters.theta_v = 0.5;
-    parameters.d_l = 2.0;
+    parameters.facing_weight = 1.0;
+    parameters.lane_width_m = 4.0;
+    parameters.facing_distance_m = 2.0;
+    parameters.facing_angle_rad = 0.5;
+    parameters.facing_length_m = 2.0;
     return parameters;
 }
 
@@ -78,7 +78,7 @@ TEST(FacingCost, IsOneWhereNothingFaces) {
     EXPECT_EQ(facing_cost(cones_at({{2, 2}, {5, 2}, {5, -1}}), facing_parameters(), 0, 1), 1.0);
     // If the lane were that narrow, an edge to its own end would face it.
     RldParameters narrow = facing_parameters();
-    narrow.d_w = 0.5;
+    narrow.lane_width_m = 0.5;
     EXPECT_EQ(facing_cost(cones_at({{2, 2}, {5, 2}, {5, 1}}), narrow, 0, 1), 1.0);
 }
 
@@ -92,7 +92,7 @@ TEST(FacingCost, CountsNoEdgeThatIsTooLong) {
 
 TEST(NearEndFit, IsBestHalfALaneBesideTheCar) {
     RldParameters parameters;
-    parameters.d_w = 4.0;
+    parameters.lane_width_m = 4.0;
     parameters.d_t = 2.0;
     Scene scene;
     for (const double side : {1.0, -1.0}) {
@@ -109,11 +109,11 @@ TEST(NearEndFit, IsBestHalfALaneBesideTheCar) {
 TEST(ShapeCosts, AddUpOnALaneByHand) {
     const Scene lane = cones_at({{2, 2}, {4, 2}, {7, 2}, {2, -2}, {4, -2}, {7, -2}});
     RldParameters parameters;
-    parameters.d_w = 4.0;
+    parameters.lane_width_m = 4.0;
     parameters.d_t = 2.0;
     parameters.w_s = parameters.w_t = parameters.w_p = parameters.w_b = 0.0;
-    parameters.w_u = 3.0;
-    parameters.w_n = 0.5;
+    parameters.unevenness_weight = 3.0;
+    parameters.near_end_weight = 0.5;
     parameters.d_near = 3.0;
     const LaneGraph graph{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
     const double expected = 2 * 3.0 * 0.25 - 2 * 0.5;
@@ -124,10 +124,10 @@ TEST(ShapeCosts, AddUpOnALaneByHand) {
 TEST(ShapeCosts, AreZeroIfSwitchedOff) {
     const Scene scene = tests::random_scene(3, 9);
     RldParameters other_thresholds;
-    other_thresholds.d_w = 3.0;
-    other_thresholds.d_v = 1.0;
-    other_thresholds.theta_v = 0.1;
-    other_thresholds.d_l = 1.0;
+    other_thresholds.lane_width_m = 3.0;
+    other_thresholds.facing_distance_m = 1.0;
+    other_thresholds.facing_angle_rad = 0.1;
+    other_thresholds.facing_length_m = 1.0;
     const LaneGraphProblem plain = make_problem(scene, {});
     const LaneGraphProblem same = make_problem(scene, other_thresholds);
     ASSERT_FALSE(plain.turns.empty());
@@ -141,10 +141,10 @@ TEST(ShapeCosts, AreZeroIfSwitchedOff) {
 TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
     Scene scene = tests::cones_at({{2.0, 0.0}, {2.0, 0.0}, {1.9, 0.5}, {2.1, 0.5}});
     RldParameters parameters;
-    parameters.w_v = 1.0;
-    parameters.d_w = 0.5;
+    parameters.facing_weight = 1.0;
+    parameters.lane_width_m = 0.5;
     parameters.d_e = 0.2;
-    parameters.d_v = parameters.d_l = 2.0;
+    parameters.facing_distance_m = parameters.facing_length_m = 2.0;
     const LaneGraphProblem problem = make_problem(scene, parameters, EdgeExtent::all_pairs);
     ASSERT_EQ(problem.edges.front().j, 1U);
     EXPECT_EQ(problem.edges.front().facing_cost, 1.0);
@@ -153,10 +153,10 @@ TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
 TEST(ShapeCosts, ComeByHandWhereThereAreNone) {
     EXPECT_TRUE(has_shape_costs(with_shape_costs({})));
     RldParameters own;
-    own.w_v = 0.3;
+    own.facing_weight = 0.3;
     const RldParameters same = with_shape_costs(own);
-    EXPECT_EQ(same.w_v, 0.3);
-    EXPECT_EQ(same.w_u, 0.0);
+    EXPECT_EQ(same.facing_weight, 0.3);
+    EXPECT_EQ(same.unevenness_weight, 0.0);
     EXPECT_EQ(same.s_crit, RldParameters{}.s_crit);
 }
 
@@ -169,9 +169,9 @@ TEST(ShapeCosts, AreThoseOfTheIndependentChecker) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 9);
         RldParameters parameters;
-        parameters.w_u = 0.7;
-        parameters.w_v = 1.3;
-        parameters.w_n = seed % 2 == 0 ? 0.9 : 4.0;
+        parameters.unevenness_weight = 0.7;
+        parameters.facing_weight = 1.3;
+        parameters.near_end_weight = seed % 2 == 0 ? 0.9 : 4.0;
         for (const EdgeExtent extent : {EdgeExtent::candidates, EdgeExtent::all_pairs}) {
             const LaneGraphProblem problem = make_problem(scene, parameters, extent);
             for (const ProblemEdge& edge : problem.edges) {

@@ -247,9 +247,9 @@ TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
         parameters.use_confidence = true;
         parameters.forbid_crossing = true;
         if (seed % 2 == 0) {
-            parameters.w_u = 0.3;
-            parameters.w_v = 0.8;
-            parameters.w_n = 0.9;
+            parameters.unevenness_weight = 0.3;
+            parameters.facing_weight = 0.8;
+            parameters.near_end_weight = 0.9;
         }
         const RldReport reference = make_exhaustive_solver()->solve(make_problem(scene, parameters), {});
         const RldReport report = solve(scene, parameters);
@@ -272,8 +272,8 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
         parameters.theta_gap = 0.6;
-        parameters.k_edge = static_cast<double>(seed % 5);
-        parameters.k_gap = static_cast<double>(seed % 7);
+        parameters.nearest_of_edge = static_cast<double>(seed % 5);
+        parameters.nearest_of_gap = static_cast<double>(seed % 7);
         parameters.d_side = seed % 3 == 0 ? 2.5 : 0.0;
         const RldReport plain = solve(scene, parameters);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);

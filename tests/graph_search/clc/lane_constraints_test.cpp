@@ -1,7 +1,6 @@
 #include "graph_search/clc/lane_constraints.hpp"
 
-#include "graph_search/clc/lane_closing.hpp"
-#include "graph_search/clc/next_vertex.hpp"
+#include "graph_search/clc/deciders.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
 #include "tests/support/testing.hpp"
 
