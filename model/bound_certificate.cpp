@@ -190,7 +190,7 @@ class Verification {
     const RldParameters& p_;
     const BoundCertificate& certificate_;
     std::size_t cones_;
-    LaneGraphReference reference_;
+    LaneGraphReference<long double> reference_;
     std::vector<Arc> arcs_;
     std::vector<std::vector<Succession>> successions_;  ///< by arc
     std::vector<double> walk_;                          ///< the shortest walk that ends with the arc

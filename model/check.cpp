@@ -13,6 +13,7 @@
 namespace conelane {
 namespace {
 
+using Real = long double;
 constexpr double kAgreement = 1e-6;
 
 class Checker {
@@ -122,7 +123,7 @@ class Checker {
     }
 
     void costs() {
-        LaneGraphReference::Real sum = 0;
+        Real sum = 0;
         for (const Edge& edge : graph_.edges) {
             if (reference_.exceeds_s_crit(edge) && !reference_.is_over_gap(edge))
                 violated_for_good("(27) edge " + name(edge) + " exceeds s_crit");
@@ -145,7 +146,7 @@ class Checker {
     }
 
     /// The cost of the turn.
-    LaneGraphReference::Real turn(std::size_t from, std::size_t middle, std::size_t to) {
+    Real turn(std::size_t from, std::size_t middle, std::size_t to) {
         if (reference_.exceeds_t_crit(from, middle, to))
             violated_for_good("(28) the angle at cone " + name(middle) + " exceeds t_crit");
         const bool over_gap =
@@ -158,7 +159,7 @@ class Checker {
     const Scene& scene_;
     const RldParameters& p_;
     const LaneGraph& graph_;
-    LaneGraphReference reference_;
+    LaneGraphReference<Real> reference_;
     std::map<std::size_t, std::vector<std::size_t>> neighbours_;
     CheckReport report_;
 };

@@ -148,7 +148,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         Call& call = calls_.back();
         const LaneConstraints::State& lane = constraints_.state();
         const std::array<bool, 2> extensible{drop_visited(call, kLeft), drop_visited(call, kRight)};
-        const bool given_up = rules_.backtracking && lane.backtrack(extensible[kLeft], extensible[kRight]);
+        const bool given_up = lane.backtrack(extensible[kLeft], extensible[kRight]);
         if (given_up || (!extensible[kLeft] && !extensible[kRight])) {
             end_call();
             continue;
@@ -242,8 +242,7 @@ void PathPairEnumeration::extend(const Choice& choice, const std::array<bool, 2>
     const Point segment = graph_->position(next.vertex) - graph_->position(from);
     constraints_.push(side, graph_->position(next.vertex), first_segment || next.turning < phi_max_);
     const LaneConstraints::State& extended = constraints_.state();
-    if (rules_.backtracking && !extended.feasible &&
-        extended.backtrack(extensible[kLeft], extensible[kRight])) {
+    if (!extended.feasible && extended.backtrack(extensible[kLeft], extensible[kRight])) {
         constraints_.pop(side);
         follows_guide_ = false;
         return;

@@ -242,32 +242,6 @@ TEST(LaneBeam, FindsTheWholeLaneBesideAFalseStart) {
     EXPECT_THAT(lane[kRight], ElementsAre(1, 3, 5, 7, 9, 11));
 }
 
-TEST(LaneBeam, LevelsAreAsWideAsAskedBestFirstAndOneStepDeeperEach) {
-    for (unsigned seed = 0; seed < 20; ++seed) {
-        SCOPED_TRACE(seed);
-        Search search(random_scene(seed, 20), sensible_scores());
-        search.start(5);
-        std::size_t vertices = 2;
-        do {
-            EXPECT_LE(search.beam.level().size(), 5u);
-            double before = std::numeric_limits<double>::infinity();
-            for (const std::size_t number : search.beam.level()) {
-                const LaneBeam::State& state = search.beam.state(number);
-                EXPECT_EQ(state.vertices[kLeft] + state.vertices[kRight], vertices);
-                EXPECT_LE(state.score, before);
-                before = state.score;
-                double sum = 0.0;
-                for (std::size_t at = number; at != LaneBeam::kNone; at = search.beam.state(at).parent) {
-                    sum += search.scores.score(search.beam.state(at).step);
-                }
-                EXPECT_NEAR(state.score, sum, 1e-9);
-                (void)distinct_vertices(search.beam, number);
-            }
-            ++vertices;
-        } while (search.beam.advance(search.budget));
-    }
-}
-
 /// Scores that also judge what lies about a step, for better and for worse.
 StepScores neighbourhood_scores() {
     StepScores scores = sensible_scores();

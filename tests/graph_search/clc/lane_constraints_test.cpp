@@ -39,28 +39,6 @@ class GrowingLane {
     LaneConstraints constraints;
 };
 
-TEST(LaneConstraints, AStraightLaneIsFeasibleAtEveryStep) {
-    GrowingLane lane({0, 2}, {0, -2});
-    EXPECT_TRUE(lane.state().feasible);
-    for (const double x : {4.0, 8.0, 12.0}) {
-        lane.push(kLeft, {x, 2});
-        EXPECT_TRUE(lane.state().feasible);
-        lane.push(kRight, {x, -2});
-        EXPECT_TRUE(lane.state().feasible);
-    }
-}
-
-TEST(LaneConstraints, ATurnOfARightAngleIsTooMuch) {
-    GrowingLane lane({0, 2}, {0, -2});
-    lane.push(kLeft, {4, 2});
-    lane.push(kLeft, {4, 5});
-    EXPECT_TRUE(lane.state().hopeless);
-    EXPECT_FALSE(lane.feasible_by_definition());
-    lane.pop(kLeft);
-    lane.push(kLeft, {4.5, 5});
-    EXPECT_FALSE(lane.state().hopeless);
-}
-
 // Lemma 2: the line between the last points crosses the left boundary until the right one catches up.
 TEST(LaneConstraints, ALineBetweenTheLastPointsThatCrossesCanBeUndone) {
     GrowingLane lane({0, 2}, {0, -2});

@@ -221,24 +221,6 @@ TEST(PathPairEnumeration, IsCompleteOnRandomMapsAndMissesLittleOfWhatIsLeftBehin
         << missed << " of " << feasible;
 }
 
-TEST(PathPairEnumeration, BacktrackingSavesIterationsAndLosesNothing) {
-    EnumerationRules rules;
-    rules.width_backtracking = WidthBacktracking::proven;
-    EnumerationRules without = rules;
-    without.backtracking = false;
-    std::int64_t saved = 0;
-    for (unsigned seed = 0; seed < 60; ++seed) {
-        SCOPED_TRACE(seed);
-        const std::vector<Point> points = random_map(seed, 5 + seed % 2);
-        const Result backtracking = enumerate(points, rules);
-        const Result exhaustive = enumerate(points, without);
-        ASSERT_EQ(open_pairs(backtracking), open_pairs(exhaustive));
-        ASSERT_LE(backtracking.iterations, exhaustive.iterations);
-        saved += exhaustive.iterations - backtracking.iterations;
-    }
-    EXPECT_GT(saved, 10000);
-}
-
 /// By definition: for each step of a side after its start, the vertices not yet on that side that make a
 /// smaller angle with its last segment (the heading at the start).
 std::size_t discrepancies(const std::vector<Point>& points, double d_max_m, const PathPairVertices& lane) {

@@ -181,33 +181,6 @@ TEST(LaneGrowth, TellsTheNearPartFromTheRest) {
     EXPECT_EQ(of("near_curvature_difference_rad_per_m"), 0.0);
 }
 
-TEST(RankNet, IsTwoLayersWithARectifierBetween) {
-    RankNetWeights weights;
-    weights.mean = Eigen::VectorXd::Ones(8);
-    weights.deviation = Eigen::VectorXd::Constant(8, 2.0);
-    weights.hidden = Eigen::MatrixXf::Zero(2, 8);
-    weights.hidden(0, 0) = 1.0F;
-    weights.hidden(1, 3) = -1.0F;
-    weights.hidden_bias.resize(2);
-    weights.hidden_bias << 0.5F, 0.0F;
-    weights.output.resize(2);
-    weights.output << 3.0F, 10.0F;
-    weights.output_bias = -1.0F;
-    // More lanes than one batch; only the first and the last differ from the mean.
-    LaneFeatures average;
-    average.fill(1.0);
-    std::vector<LaneFeatures> lanes(150, average);
-    lanes.front()[0] = 5.0;  // standardised 2: first unit 2.5, second 0
-    lanes.back()[3] = -3.0;  // standardised -2: first unit 0.5, second 2
-    lanes[70][3] = 9.0;      // standardised 4: the second unit is 0
-    std::vector<double> scores(lanes.size());
-    make_rank_net(weights)->score(lanes, scores);
-    EXPECT_DOUBLE_EQ(scores.front(), 3 * 2.5 - 1);
-    EXPECT_DOUBLE_EQ(scores.back(), 3 * 0.5 + 10 * 2 - 1);
-    EXPECT_DOUBLE_EQ(scores[70], 3 * 0.5 - 1);
-    EXPECT_DOUBLE_EQ(scores[71], 3 * 0.5 - 1);
-}
-
 /// Rests that do not fill a batch of units or lanes.
 TEST(RankNet, IsTheSameForAnyNumberOfUnitsAndLanes) {
     boost::random::mt19937_64 random(7);
