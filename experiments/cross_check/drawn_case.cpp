@@ -240,8 +240,8 @@ void draw_learned_costs(RldParameters& parameters, Draw& draw) {
         if (draw.chance(0.5)) parameters.d_clear = rounded(draw.real(0.1, 1.0));
     }
     if (draw.chance(0.3)) parameters.d_side = rounded(draw.real(1.0, 6.0));
-    if (draw.chance(0.5)) parameters.k_edge = draw.integer(2, 8);
-    if (draw.chance(0.5)) parameters.k_gap = draw.integer(2, 16);
+    if (draw.chance(0.5)) parameters.nearest_of_edge = draw.integer(2, 8);
+    if (draw.chance(0.5)) parameters.nearest_of_gap = draw.integer(2, 16);
     LearnedCosts costs = LearnedCosts::zero(draw.chance(0.5) ? kUnits : 0);
     for (LearnedNetwork& network : costs.networks) {
         for (std::vector<double>* list : {&network.linear, &network.hidden, &network.output}) {

@@ -55,7 +55,7 @@ class Width {
             if (contenders_.size() == FrontJudge::kContenders) break;
             contenders_.push_back({lane.parent, lane.score});
         }
-        if (!contenders_.empty()) judge_.look(search_, contenders_);
+        if (!contenders_.empty()) judge_.compare(search_, contenders_);
         const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
         times_ms_.push_back(took.count());
         ++row_.scenes;

@@ -31,7 +31,7 @@ FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
     risks_.clear();
     for (const FrontTruth::Cones& lane : lanes_)
         risks_.push_back(truth_.risk(lane, boundaries, options.risk));
-    judge.look(front_, contenders_);
+    judge.compare(front_, contenders_);
     add_rank(weights, judge, options, loss, derivatives);
     const std::optional<std::size_t> chosen = answered(judge);
     if (!chosen) return loss;
@@ -55,7 +55,7 @@ double FrontJudgeLearner::judge_noise(const Scene& scene, const FrontWeights& we
                                       FrontWeights& derivatives) {
     search(scene, cost, options);
     if (contenders_.empty()) return 0.0;
-    judge.look(front_, contenders_);
+    judge.compare(front_, contenders_);
     const std::optional<std::size_t> chosen = answered(judge);
     if (!chosen) return 0.0;
     const double confidence = judge.confidence(*chosen);

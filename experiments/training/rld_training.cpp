@@ -134,7 +134,8 @@ RldParameters rld_learning_parameters() {
     RldParameters parameters = rld_parameter_set("shape").value();
     for (double RldParameters::*const weight :
          {&RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p, &RldParameters::w_b,
-          &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n}) {
+          &RldParameters::unevenness_weight, &RldParameters::facing_weight,
+          &RldParameters::near_end_weight}) {
         parameters.*weight = 0.0;
     }
     parameters.t_crit = 12.0;
@@ -147,8 +148,8 @@ RldParameters rld_learning_parameters() {
     parameters.d_gap = 12.5;
     parameters.theta_gap = 1.3;
     parameters.d_clear = 0.2;
-    parameters.k_edge = 8.0;
-    parameters.k_gap = 16.0;
+    parameters.nearest_of_edge = 8.0;
+    parameters.nearest_of_gap = 16.0;
     return parameters;
 }
 
@@ -161,12 +162,12 @@ LearnedCosts shape_as_learned_costs() {
     weight(costs, LearnedPart::edge, "one") = -shape.w_b - kMoved;
     weight(costs, LearnedPart::edge, "spacing") = shape.w_s;
     weight(costs, LearnedPart::edge, "heading") = shape.w_p;
-    weight(costs, LearnedPart::edge, "facing") = shape.w_v;
+    weight(costs, LearnedPart::edge, "facing") = shape.facing_weight;
     weight(costs, LearnedPart::turn, "one") = kMoved;
     weight(costs, LearnedPart::turn, "angle_cost") = shape.w_t;
-    weight(costs, LearnedPart::turn, "unevenness") = shape.w_u;
+    weight(costs, LearnedPart::turn, "unevenness") = shape.unevenness_weight;
     weight(costs, LearnedPart::near_end, "one") = kEnd;
-    weight(costs, LearnedPart::near_end, "fit") = -shape.w_n;
+    weight(costs, LearnedPart::near_end, "fit") = -shape.near_end_weight;
     weight(costs, LearnedPart::far_end, "one") = kEnd;
     return costs;
 }

@@ -22,7 +22,8 @@ ObjectiveSums objective_sums(const LaneGraphProblem& problem, const LaneGraph& g
         sum_of(ObjectiveTerm::near_ends) += near_ends;
         // With confidences, edges have different benefits: the benefit is then the rest of the cost.
         const double others = p.w_s * edge.spacing_cost + p.w_p * edge.heading_cost +
-                              p.w_color * edge.color_cost + p.w_v * edge.facing_cost + p.w_n * near_ends;
+                              p.w_color * edge.color_cost + p.facing_weight * edge.facing_cost +
+                              p.near_end_weight * near_ends;
         if (p.w_b > 0.0) sum_of(ObjectiveTerm::benefit) += (edge.cost - others) / p.w_b;
     }
     for (const ProblemTurn& turn : problem.turns) {

@@ -15,8 +15,10 @@ inline constexpr std::size_t kObjectiveTermCount = 8;
 
 /// The weights in the order of the terms.
 inline constexpr std::array<double RldParameters::*, kObjectiveTermCount> kObjectiveWeights{
-    &RldParameters::w_b,     &RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p,
-    &RldParameters::w_color, &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n};
+    &RldParameters::w_b,           &RldParameters::w_s,
+    &RldParameters::w_t,           &RldParameters::w_p,
+    &RldParameters::w_color,       &RldParameters::unevenness_weight,
+    &RldParameters::facing_weight, &RldParameters::near_end_weight};
 
 /// Each term of a lane graph's objective without its weight: the objective is the sum of weights times these
 /// terms. Benefit and near ends are at most zero.

@@ -22,13 +22,13 @@ constexpr std::size_t kShape = 7;
 constexpr std::size_t kCosts = 4;
 constexpr std::size_t kLimits = 7;
 constexpr std::array<TunedParameter, kShape + kCosts + kLimits> kTuned{{
-    {"w_u", &P::w_u, 0.01, 3.0, true},
-    {"w_v", &P::w_v, 0.02, 5.0, true},
-    {"w_n", &P::w_n, 0.02, 5.0, true},
-    {"d_w", &P::d_w, 3.0, 5.0, false},
-    {"d_v", &P::d_v, 0.5, 4.0, true},
-    {"theta_v", &P::theta_v, 0.1, 1.5, true},
-    {"d_l", &P::d_l, 0.5, 10.0, true},
+    {"w_u", &P::unevenness_weight, 0.01, 3.0, true},
+    {"w_v", &P::facing_weight, 0.02, 5.0, true},
+    {"w_n", &P::near_end_weight, 0.02, 5.0, true},
+    {"d_w", &P::lane_width_m, 3.0, 5.0, false},
+    {"d_v", &P::facing_distance_m, 0.5, 4.0, true},
+    {"theta_v", &P::facing_angle_rad, 0.1, 1.5, true},
+    {"d_l", &P::facing_length_m, 0.5, 10.0, true},
     {"d_e", &P::d_e, 1.5, 5.0, false},
     {"w_s", &P::w_s, 0.01, 3.0, true},
     {"w_t", &P::w_t, 0.02, 5.0, true},

@@ -199,7 +199,7 @@ class PathPairSolver : public RldSolver {
         // At least any verifier's upper bound of a lane graph's cost, however it splits the costs.
         const double best_end =
             problem.learned_end_cost.empty() ? 0.0 : std::ranges::min(problem.learned_end_cost);
-        const double most = cost_limit(problem) + 2.0 * (problem.parameters.w_n - best_end) *
+        const double most = cost_limit(problem) + 2.0 * (problem.parameters.near_end_weight - best_end) *
                                                       static_cast<double>(problem.edges.size());
         const double cutoff = std::min(bound, most);
         // The margin makes sure that nothing is dropped here that exact arithmetic keeps.

@@ -21,18 +21,6 @@ TEST(FootPoint, OfASegmentWithoutLengthIsItsOnlyPoint) {
     EXPECT_DOUBLE_EQ(foot.distance_m, 5.0);
 }
 
-TEST(SegmentDistance, BetweenEnds) {
-    const SegmentDistance d = segment_distance({{0, 0}, {1, 0}}, {{2, 0}, {3, 1}});
-    EXPECT_DOUBLE_EQ(d.distance_m, 1.0);
-    EXPECT_TRUE(d.between_ends);
-}
-
-TEST(SegmentDistance, FromAnEndToTheInside) {
-    const SegmentDistance d = segment_distance({{0, 0}, {4, 0}}, {{2, 1}, {2, 5}});
-    EXPECT_DOUBLE_EQ(d.distance_m, 1.0);
-    EXPECT_FALSE(d.between_ends);
-}
-
 TEST(SegmentDistance, ExactlyFacingSegmentsTieAndCountAsBetweenEnds) {
     const SegmentDistance facing = segment_distance({{0, 0}, {4, 0}}, {{0, 3}, {4, 3}});
     EXPECT_DOUBLE_EQ(facing.distance_m, 3.0);

@@ -249,9 +249,9 @@ TEST_F(ParameterFileTest, ExtrasAreOptional) {
     text.replace(text.find("\"use_confidence\": 1"), 19, "\"use_confidence\": 2");
     EXPECT_EQ(error_of([&] { static_cast<void>(read_rld_parameters(file_with(text, "p"))); }),
               "p: use_confidence: must be 0 or 1");
-    parameters.d_v = 0.0009;
+    parameters.facing_distance_m = 0.0009;
     EXPECT_THROW(validate(parameters), InvalidInput);
-    parameters.d_v = 0.001;
+    parameters.facing_distance_m = 0.001;
     EXPECT_NO_THROW(validate(parameters));
 }
 

@@ -57,8 +57,8 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
         RldParameters parameters;
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
-        parameters.k_edge = static_cast<double>(seed % 4);
-        parameters.k_gap = static_cast<double>(seed % 6);
+        parameters.nearest_of_edge = static_cast<double>(seed % 4);
+        parameters.nearest_of_gap = static_cast<double>(seed % 6);
         parameters.d_side = seed % 4 == 1 ? 2.5 : 0.0;
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
@@ -81,8 +81,8 @@ TEST(SearchCertificate, OfFacingCostsAmongNearestConesIsVerified) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 10);
         RldParameters parameters;
-        parameters.w_v = 0.8;
-        parameters.k_edge = static_cast<double>(1 + seed % 3);
+        parameters.facing_weight = 0.8;
+        parameters.nearest_of_edge = static_cast<double>(1 + seed % 3);
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
         if (!certificate.lane_graph) continue;
         const SearchVerdict verdict = verify(certificate, scene, parameters);

@@ -186,7 +186,7 @@ TEST(Shrinking, KeepsTheConesAndTheParametersThatMatter) {
     });
     ASSERT_EQ(shrunk.scene.cones.size(), 2U);
     EXPECT_EQ(shrunk.parameters.d_near, 7.5);
-    EXPECT_EQ(shrunk.parameters.w_v, 0.0);
+    EXPECT_EQ(shrunk.parameters.facing_weight, 0.0);
     EXPECT_FALSE(shrunk.parameters.forbid_crossing);
     EXPECT_LT(asked, 200);
 }

@@ -37,7 +37,8 @@ TEST(RldTraining, BeginsWithTheOptimaOfShape) {
     RldParameters learned = shape;
     for (double RldParameters::*const weight :
          {&RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p, &RldParameters::w_b,
-          &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n}) {
+          &RldParameters::unevenness_weight, &RldParameters::facing_weight,
+          &RldParameters::near_end_weight}) {
         learned.*weight = 0.0;
     }
     learned.learned_costs = std::make_shared<const LearnedCosts>(shape_as_learned_costs());

@@ -46,7 +46,7 @@ TEST(ParameterRanges, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
     EXPECT_FALSE(has_shape_costs(plain));
     EXPECT_EQ(plain.d_near, 12.0);
     const RldParameters shaped = highest(with_shape_costs({}));
-    EXPECT_EQ(shaped.w_u, 3.0);
+    EXPECT_EQ(shaped.unevenness_weight, 3.0);
     EXPECT_EQ(shaped.w_s, plain.w_s);
     EXPECT_EQ(shaped.d_near, RldParameters{}.d_near);
     EXPECT_EQ(shaped.s_crit, 7.0) << "a limit below its range";

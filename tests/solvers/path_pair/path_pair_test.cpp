@@ -280,11 +280,11 @@ TEST(PathPairCertificate, RestsOnEveryShapeCost) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         RldParameters parameters = with_shape_costs({});
-        parameters.k_edge = seed % 4 == 3 ? 3.0 : 0.0;
+        parameters.nearest_of_edge = seed % 4 == 3 ? 3.0 : 0.0;
         std::vector<RldParameters> cheaper(refused.size(), parameters);
-        cheaper[0].w_u = 0.0;
-        cheaper[1].w_v = 0.0;
-        cheaper[2].w_n *= 1.5;
+        cheaper[0].unevenness_weight = 0.0;
+        cheaper[1].facing_weight = 0.0;
+        cheaper[2].near_end_weight *= 1.5;
         const Scene scene = tests::random_scene(seed, 16);
         const BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
         const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
@@ -331,8 +331,8 @@ TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
         parameters.theta_gap = 0.5;
-        parameters.k_edge = static_cast<double>(seed % 6);
-        parameters.k_gap = static_cast<double>(seed % 9);
+        parameters.nearest_of_edge = static_cast<double>(seed % 6);
+        parameters.nearest_of_gap = static_cast<double>(seed % 9);
         parameters.d_side = seed % 3 == 0 ? 2.5 : 0.0;
         parameters.w_color = 0.3;
         parameters.use_confidence = true;

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_graph.hpp"
 #include "model/geometry.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -41,6 +41,39 @@ namespace conelane {
     return arc + (back ? 0.75 : 0.25) * std::numbers::pi;
 }
 inline constexpr double kNearlyAngle_rad = 2e-5;
+
+/// How far a boundary may step from a vertex: to its nearest neighbours only, where cones are dense. Beyond
+/// the paper: with steps of up to 10 m a cone may have over 100 neighbours, most of them of other parts of
+/// the course. Features still count all neighbours.
+class StepReach {
+  public:
+    /// `most`: neighbours of a vertex that a step may lead to, and those as near as the last one of them; 0:
+    /// all. `graph` must outlive the use of this object. Keeps memory from call to call.
+    void reset(const SearchGraph& graph, std::size_t most);
+    /// Square of the largest length of a step from the vertex, infinity if all neighbours are allowed [m^2].
+    [[nodiscard]] double squared_m2(Vertex vertex) {
+        if (squared_m2_[vertex] < 0.0) find(vertex);
+        return squared_m2_[vertex];
+    }
+    /// The places of the allowed neighbours among all neighbours of the vertex, ascending. Valid until the
+    /// next call.
+    [[nodiscard]] std::span<const std::uint32_t> steps(Vertex vertex) {
+        if (squared_m2_[vertex] < 0.0) find(vertex);
+        return std::span(allowed_).subspan(first_[vertex], count_[vertex]);
+    }
+
+  private:
+    void find(Vertex vertex);
+
+    const SearchGraph* graph_ = nullptr;
+    std::size_t most_ = 0;
+    std::vector<double> squared_m2_;    ///< by vertex; negative until it is asked for
+    std::vector<std::uint32_t> first_;  ///< by vertex, in `allowed_`
+    std::vector<std::uint32_t> count_;  ///< by vertex
+    std::vector<std::uint32_t> allowed_;
+    std::vector<double> distances_m2_;
+    std::vector<double> nearest_m2_;
+};
 
 /// A vertex that may come next on a boundary.
 struct NextVertex {
@@ -93,5 +126,24 @@ class NextVertexDecider {
     std::vector<Range> ranges_;  ///< by directed edge
     std::vector<NextVertex> options_;
 };
+
+/// What the left-right decider needs of a boundary: its last point, the direction of its last segment (the
+/// car's heading if there is none), and the next candidate point.
+struct BoundaryTip {
+    Point last;
+    Point direction;
+    Point next;
+};
+
+/// |theta_r - theta_l| of equation (4), as a number in [0, 4] that grows with it. theta_l and theta_r are the
+/// absolute angles between the last segments and the lines from each boundary's last point to the other's.
+/// (With signs, the difference would be about pi for any boundaries.)
+[[nodiscard]] double advance_deviation(const Point& left_last, const Point& left_direction,
+                                       const Point& right_last, const Point& right_direction);
+
+/// Left-right decider LRD, equation (5): the side whose extension keeps both boundaries more equally
+/// advanced. In the printed equation, the order of the sides decides ties; here `tie` is returned, so a scene
+/// and its mirror image are searched alike.
+[[nodiscard]] Side left_right_decision(const std::array<BoundaryTip, 2>& tips, Side tie);
 
 }  // namespace conelane
