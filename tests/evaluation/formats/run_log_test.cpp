@@ -7,18 +7,8 @@
 #include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <numbers>
-#include <set>
-#include <string>
-#include <vector>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

@@ -1,15 +1,9 @@
 #include "evaluation/world/shortest_tour.hpp"
 
 #include "tests/support/boundary_checks.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <numeric>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
