@@ -139,7 +139,11 @@ std::vector<LaneRecord> read_finished_lanes(const OutsideDetector& detector,
         const auto found = answer_to.find(scene.id);
         if (found == answer_to.end()) {
             ++missing;
-            records.push_back({scene.id, detector.name, {}, OutsideLimits{}.answer_ms, {}});
+            records.push_back({.scene = scene.id,
+                               .detector = detector.name,
+                               .answer = {},
+                               .latency_ms = OutsideLimits{}.answer_ms,
+                               .nearest = {}});
             records.back().answer.status = LaneStatus::error;
             records.back().answer.message = "the lanes file has no answer to this scene";
             continue;

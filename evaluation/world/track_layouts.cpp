@@ -223,7 +223,8 @@ std::span<const std::string_view> drawn_layout_names() {
 
 TrackLayout draw_layout(std::string_view name, std::uint64_t seed) {
     Draw draw(name, seed);
-    TrackLayout layout{std::string(name), true, {}, 0, {}};
+    TrackLayout layout{
+        .name = std::string(name), .closed = true, .centre_line = {}, .stray_cones = 0, .style = {}};
     TrackStyle& style = layout.style;
     if (name == "legs") {
         style.mean_width_m = draw.uniform(3.2, 4.4);
