@@ -20,7 +20,7 @@ using ::testing::IsEmpty;
 
 class TrackFiles : public FileTest {
   protected:
-    [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& content) const {
+    std::filesystem::path write(const std::string& name, const std::string& content) const {
         return file_with(content, name);
     }
     /// Expects that `read` refuses each text, with a message that has these words.
