@@ -1,10 +1,7 @@
 #include "evaluation/formats/scene_set.hpp"
 
-#include "evaluation/formats/left_out_scenes.hpp"
-#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/formats/scene_pair.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace conelane {
 
@@ -81,13 +79,55 @@ std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
     return starts;
 }
 
-void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set) {
-    write_scene_set(scenes_file, set, {});
-}
-
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set,
                      const LeftOutScenes& left_out) {
     write_scene_pair(scenes_file, set.scenes, set.tracks, left_out);
+}
+
+void merge(LeftOutScenes& left_out, const LeftOutScenes& of_shard) {
+    for (const auto& [track, ids] : of_shard) {
+        std::vector<std::string>& all = left_out[track];
+        std::ranges::copy(ids, std::back_inserter(all));
+        std::ranges::sort(all);
+    }
+}
+
+std::string note_on(const LeftOutScenes& left_out) {
+    std::size_t count = 0;
+    std::string first;
+    for (const auto& [track, ids] : left_out) {
+        if (count == 0 && !ids.empty()) first = ids.front();
+        count += ids.size();
+    }
+    if (count == 0) return "";
+    return fmt::format("{} left out: the ground truth is degenerate; the first is {}",
+                       count == 1 ? "1 scene is" : fmt::format("{} scenes are", count), first);
+}
+
+std::string table_note_on(const LeftOutScenes& left_out) {
+    const std::string note = note_on(left_out);
+    return note.empty() ? "" : "    " + note + "\n";
+}
+
+nlohmann::ordered_json scene_options_json(const SceneOptions& options) {
+    nlohmann::ordered_json json{
+        {"fp", options.false_positive_rates},
+        {"range", options.ranges_m},
+        {"every", options.every_m},
+        {"noise", options.noise_sigma_m.value_or(0.0)},
+        {"pose_noise",
+         {options.pose_noise_lateral_m.value_or(0.0), options.pose_noise_yaw_rad.value_or(0.0)}},
+        {"miss", options.miss_rate.value_or(0.0)},
+        {"color", options.with_color},
+        {"color_error", options.color_error_rate},
+        {"color_unknown", options.color_unknown_rate},
+        {"confidence", options.with_confidence},
+        {"seed", options.seed}};
+    if (!options.conditions.empty()) json["condition"] = condition_names(options);
+    if (options.noise_by_range) json["noise_by_range"] = *options.noise_by_range;
+    if (options.persistent) json["persist"] = *options.persistent;
+    if (options.nearest) json["nearest"] = *options.nearest;
+    return json;
 }
 
 }  // namespace conelane

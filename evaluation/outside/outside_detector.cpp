@@ -1,7 +1,7 @@
 #include "evaluation/outside/outside_detector.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/json_records.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/solver_program.hpp"
 
@@ -83,42 +83,15 @@ OutsideDetector parse_named_source(std::string_view text, Kind kind, std::string
     return detector;
 }
 
-DetectorCard read_card(const JsonNode& json) {
-    DetectorCard card;
-    const auto text = [&](const char* key, std::optional<std::string>& value) {
-        if (const auto found = json.find(key)) value = found->string();
-    };
-    const auto boolean = [&](const char* key, std::optional<bool>& value) {
-        if (const auto found = json.find(key)) value = found->boolean();
-    };
-    text("name", card.name);
-    text("address", card.address);
-    text("licence", card.licence);
-    boolean("colour_used", card.color_used);
-    boolean("history_used", card.history_used);
-    if (const auto courses = json.find("training_courses")) {
-        card.training_courses.emplace();
-        const std::size_t size = courses->array_size();
-        for (std::size_t i = 0; i < size; ++i) card.training_courses->push_back(courses->element(i).string());
-    }
-    return card;
-}
-
-ordered_json to_json(const DetectorCard& card) {
-    ordered_json json = ordered_json::object();
-    const auto put_if_said = [&](const char* key, const auto& value) {
-        if (value) json[key] = *value;
-    };
-    put_if_said("name", card.name);
-    put_if_said("address", card.address);
-    put_if_said("licence", card.licence);
-    put_if_said("colour_used", card.color_used);
-    put_if_said("history_used", card.history_used);
-    put_if_said("training_courses", card.training_courses);
-    return json;
-}
-
 }  // namespace
+
+template <>
+inline constexpr std::tuple kFields<DetectorCard>{Field{"name", &DetectorCard::name},
+                                                  Field{"address", &DetectorCard::address},
+                                                  Field{"licence", &DetectorCard::licence},
+                                                  Field{"colour_used", &DetectorCard::color_used},
+                                                  Field{"history_used", &DetectorCard::history_used},
+                                                  Field{"training_courses", &DetectorCard::training_courses}};
 
 const char* to_string(OutsideDetector::Kind kind) {
     return kind == Kind::program ? "exec" : kind == Kind::lanes ? "lanes" : "solver";
@@ -186,14 +159,14 @@ std::optional<fs::path> card_path(const OutsideDetector& detector) {
 
 DetectorCard read_detector_card(const fs::path& file) {
     DetectorCard card;
-    with_json_file(file, [&](const JsonNode& json) { card = read_card(json); });
+    with_json_file(file, [&](const JsonNode& json) { read_value(json, card); });
     return card;
 }
 
 std::string outside_detector_json(const OutsideDetector& detector) {
     ordered_json json{{"name", detector.name}, {to_string(detector.kind), detector.source}};
     if (detector.formulation) json["formulation"] = to_string(*detector.formulation);
-    if (detector.card) json["card"] = to_json(*detector.card);
+    if (detector.card) json["card"] = value_json(*detector.card, "card");
     return to_line(json);
 }
 
@@ -215,7 +188,7 @@ std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_
             outside.name = detector.member("name").string();
             if (const auto formulation = detector.find("formulation"))
                 outside.formulation = formulation_of(formulation->string());
-            if (const auto card = detector.find("card")) outside.card = read_card(*card);
+            if (const auto card = detector.find("card")) read_value(*card, outside.card);
             // A sweep lists the same detector once for each size.
             if (std::ranges::find(found, outside.name, &OutsideDetector::name) == found.end())
                 found.push_back(std::move(outside));

@@ -1,7 +1,7 @@
 #include "evaluation/proofs/answer_check.hpp"
 
 #include "conelane/check.hpp"
-#include "evaluation/world/cone_index.hpp"
+#include "evaluation/world/ground_truth.hpp"
 
 #include <algorithm>
 #include <cmath>

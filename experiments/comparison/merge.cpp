@@ -1,6 +1,6 @@
 #include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/left_out_scenes.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/comparison/echo_floor.hpp"

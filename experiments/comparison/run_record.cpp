@@ -1,11 +1,11 @@
 #include "experiments/comparison/run_record.hpp"
 
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/file_hash.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/parameter_tag.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/comparison/runner.hpp"

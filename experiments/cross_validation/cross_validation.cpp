@@ -1,8 +1,8 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/file_hash.hpp"
-#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 

@@ -3,7 +3,6 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/recipe.hpp"
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/file_hash.hpp"
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/parameter_file.hpp"

@@ -1,8 +1,8 @@
 #include "experiments/race/world.hpp"
 
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/world/half_disc.hpp"
-#include "evaluation/world/persistent_points.hpp"
+#include "evaluation/world/false_positives.hpp"
+#include "evaluation/world/scene_draws.hpp"
 
 #include <algorithm>
 #include <array>

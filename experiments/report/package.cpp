@@ -1,7 +1,6 @@
 #include "experiments/report/package.hpp"
 
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/output_stream.hpp"
 #include "evaluation/input_error.hpp"
 
 #include <cerrno>

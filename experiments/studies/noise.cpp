@@ -2,7 +2,6 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/world/half_disc.hpp"
 #include "evaluation/world/scene_draws.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"

@@ -4,7 +4,7 @@
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/world/cone_index.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "experiments/progress/progress.hpp"
 
 #include <algorithm>

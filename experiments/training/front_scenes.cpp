@@ -4,7 +4,7 @@
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/course.hpp"
-#include "evaluation/world/half_disc.hpp"
+#include "evaluation/world/scene_draws.hpp"
 #include "evaluation/world/scene_generation.hpp"
 
 #include <algorithm>

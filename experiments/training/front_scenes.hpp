@@ -2,7 +2,6 @@
 
 #include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/track.hpp"
-#include "evaluation/world/track_boundaries.hpp"
 
 #include <array>
 #include <cstddef>

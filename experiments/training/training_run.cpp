@@ -1,7 +1,6 @@
 #include "experiments/training/training_run.hpp"
 
 #include "evaluation/formats/provenance.hpp"
-#include "evaluation/formats/scene_options_json.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"

@@ -2,7 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/known_keys.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 

@@ -1,3 +1,4 @@
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"
@@ -49,9 +50,7 @@ Shard parse_shard(const std::string& text) {
 
 void add_options(CLI::App& command, CompareOptions& options) {
     ComparisonOptions& comparison = options.comparison;
-    command.add_option("--tracks", comparison.tracks,
-                       "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
-                       "ones without it");
+    command.add_option("--tracks", comparison.tracks, track_grammar() + "; all generated ones without it");
     command
         .add_option("--methods", options.detectors,
                     "see `conelane methods`, separated by commas; exec:NAME=COMMAND asks any program and "

@@ -5,7 +5,7 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/outside/connecting_flow.hpp"
+#include "evaluation/outside/solver_input.hpp"
 #include "evaluation/proofs/claim_verdict.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "model/lane_graph_model.hpp"

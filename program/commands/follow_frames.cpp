@@ -8,7 +8,6 @@
 #include "evaluation/formats/frame_file.hpp"
 #include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/plan_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "program/commands/unanswered.hpp"
 

@@ -1,4 +1,5 @@
 #include "conelane/invalid_input.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "experiments/options/cone_set_sizes.hpp"
 #include "experiments/options/shared_options.hpp"
@@ -72,9 +73,7 @@ void add_instances_command(CLI::App& program) {
     instances.scenes.ranges_m = {30.0};
     instances.scenes.every_m = 120.0;
     command.add_option("--out", options->out, "directory; a library in it is replaced")->required();
-    command
-        .add_option("--tracks", instances.tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
-        ->capture_default_str();
+    command.add_option("--tracks", instances.tracks, track_grammar())->capture_default_str();
     command.add_option("--nearest", options->sizes, "cone-set sizes; `all` for all visible cones")
         ->delimiter(',')
         ->capture_default_str();

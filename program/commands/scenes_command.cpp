@@ -1,6 +1,6 @@
-#include "evaluation/formats/left_out_scenes.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/scene_set.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
@@ -47,11 +47,9 @@ void make_scenes(const ScenesOptions& options) {
 
 void add_scenes_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("scenes", "scenes from tracks, with their ground truth");
+    command.footer(track_format_lines());
     auto options = std::make_shared<ScenesOptions>();
-    command
-        .add_option("--tracks", options->tracks,
-                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
-        ->required();
+    command.add_option("--tracks", options->tracks, track_grammar())->required();
     add_scene_options(command, options->scenes);
     add_nearest_option(command, options->scenes.nearest, "keep only the N nearest cones ahead");
     add_threads_option(command, options->scenes.threads, "number of threads; the scenes do not depend on it");

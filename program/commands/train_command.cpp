@@ -2,6 +2,7 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/rank_net_file.hpp"
 #include "evaluation/formats/step_score_file.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
@@ -134,8 +135,7 @@ void add_number_option(CLI::App& command, const std::string& name, double& numbe
 
 /// The tracks to train on, and those only to measure on.
 CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
-    command.add_option("--tracks", run.tracks,
-                       "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE");
+    command.add_option("--tracks", run.tracks, track_grammar());
     command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
     CLI::Option& variants = add_count_option(
         command, "--variants", run.variants,

@@ -1,6 +1,7 @@
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/file_hash.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/front_weights_file.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
@@ -86,9 +87,7 @@ void add_train_front_command(CLI::App& train_command) {
     auto options = std::make_shared<Options>();
     FrontTrainingRunOptions& run = options->run;
     FrontTrainingOptions& training = run.training;
-    command
-        .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
-        ->required();
+    command.add_option("--tracks", run.tracks, track_grammar())->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
     command.add_option("--trust-tracks", run.trust_tracks,
                        "tracks to choose the threshold of trust on, not to learn from; without them it is "

@@ -1,4 +1,5 @@
 #include "evaluation/formats/parameter_file.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/training/rld_training_run.hpp"
@@ -56,10 +57,7 @@ void add_train_rld_command(CLI::App& train_command) {
         "rld", "learns costs of the RLD program with its exact search inside: edges, turns and ends");
     auto options = std::make_shared<Options>();
     RldTrainingOptions& training = options->run.training;
-    command
-        .add_option("--tracks", options->run.tracks,
-                    "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
-        ->required();
+    command.add_option("--tracks", options->run.tracks, track_grammar())->required();
     command.add_option(
         "--params", options->parameters,
         "parameters that the costs are added to, a set or a file (JSON), whose learned costs the training "

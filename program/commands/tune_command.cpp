@@ -4,8 +4,8 @@
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "evaluation/formats/scene_options_json.hpp"
 #include "evaluation/formats/scene_set.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
@@ -283,10 +283,7 @@ void add_tune_command(CLI::App& program) {
                        fmt::format("{}, tuned for usable lanes; RLD without it, to which the options "
                                    "from --objective to --most-nodes and from --folds to --log belong",
                                    fmt::join(tunable_names(), " or ")));
-    command
-        .add_option("--tracks", options->tracks,
-                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
-        ->required();
+    command.add_option("--tracks", options->tracks, track_grammar())->required();
     command
         .add_option_function<std::string>(
             "--objective",

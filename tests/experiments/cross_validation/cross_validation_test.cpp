@@ -1,7 +1,7 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "conelane/learned_costs.hpp"
-#include "evaluation/formats/file_hash.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/parameter_file.hpp"
