@@ -4,7 +4,7 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/files/known_keys.hpp"
-#include "evaluation/files/learned_costs_file.hpp"
+#include "evaluation/files/weights_file.hpp"
 
 #include <array>
 #include <cstdint>

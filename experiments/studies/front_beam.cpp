@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/weights_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/statistics.hpp"

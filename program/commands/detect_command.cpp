@@ -1,7 +1,7 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"

@@ -5,7 +5,7 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/drivable_lane_file.hpp"
 #include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/files/plan_file.hpp"

@@ -1,18 +1,18 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/tracks/track_spec.hpp"
 #include "experiments/methods/learners.hpp"
+#include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/course_families.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -2,7 +2,7 @@
 
 #include "conelane/learned_costs.hpp"
 #include "evaluation/files/file_hash.hpp"
-#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/weights_file.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"

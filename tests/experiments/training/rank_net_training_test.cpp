@@ -1,7 +1,7 @@
 #include "experiments/training/rank_net_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/rank_net_file.hpp"
+#include "evaluation/files/weights_file.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/tracks/track_spec.hpp"
 #include "experiments/training/adam.hpp"
