@@ -13,9 +13,8 @@ std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view text) {
     for (const LearnedPart part : kLearnedParts)
         file.require_features("features." + std::string(to_string(part)), learned_features(part));
     LearnedCosts costs;
-    for_each_costs_list(costs, [&](const std::string& key, std::vector<double>& numbers) {
-        numbers = file.numbers(key);
-    });
+    for_each_costs_list(
+        costs, [&](const std::string& key, std::vector<double>& numbers) { numbers = file.numbers(key); });
     file.require_no_other("learned costs");
     validate(costs);
     return std::make_shared<const LearnedCosts>(std::move(costs));

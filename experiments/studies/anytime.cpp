@@ -2,8 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/files/json_node.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"

@@ -2,8 +2,8 @@
 
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/solver_measures.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/answer_errors.hpp"
 #include "experiments/studies/backend.hpp"
 

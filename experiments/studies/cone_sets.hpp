@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/rld_parameters.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <cstddef>
 #include <functional>

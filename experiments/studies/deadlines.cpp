@@ -2,7 +2,7 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"

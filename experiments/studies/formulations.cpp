@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"

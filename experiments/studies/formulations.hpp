@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/formulation.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/studies/cone_sets.hpp"
 
 #include <cstddef>

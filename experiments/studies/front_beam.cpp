@@ -1,9 +1,9 @@
 #include "experiments/studies/front_beam.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/weights_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/options/shared_options.hpp"

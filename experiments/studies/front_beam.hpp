@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "graph_search/front/front_search.hpp"
 
 #include <cstddef>

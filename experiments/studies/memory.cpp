@@ -1,7 +1,7 @@
 #include "experiments/studies/memory.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"

@@ -2,8 +2,8 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/half_disc.hpp"
-#include "evaluation/scenes/scene_draws.hpp"
+#include "evaluation/world/half_disc.hpp"
+#include "evaluation/world/scene_draws.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"

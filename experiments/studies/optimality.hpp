@@ -2,8 +2,8 @@
 
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/score.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <cstddef>
 #include <memory>

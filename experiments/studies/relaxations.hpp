@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/answer_errors.hpp"
 #include "experiments/studies/cone_sets.hpp"
 

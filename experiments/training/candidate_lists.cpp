@@ -1,6 +1,5 @@
 #include "experiments/training/candidate_lists.hpp"
 
-#include "evaluation/scenes/cone_index.hpp"
 #include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
-#include "evaluation/tracks/track_boundaries.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track_boundaries.hpp"
 #include "experiments/training/front_truth.hpp"
 #include "graph_search/front/front_search.hpp"
 
@@ -19,7 +19,7 @@ struct FrontLossOptions {
     double fall_out = 1.0;
     double minimum_risk = 3.0;
     double listwise = 0.5;
-    double risk_scale = 0.05;   ///< a lane with this much more risk should be e times less likely
+    double risk_scale = 0.05;  ///< a lane with this much more risk should be e times less likely
     FrontRiskOptions risk;
 };
 

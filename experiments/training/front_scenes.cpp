@@ -1,12 +1,9 @@
 #include "experiments/training/front_scenes.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/course.hpp"
-#include "evaluation/scenes/half_disc.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/tracks/centre_line.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/world/centre_line.hpp"
 
 #include <algorithm>
 #include <array>

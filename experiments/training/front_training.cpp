@@ -1,8 +1,8 @@
 #include "experiments/training/front_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/progress/parallel.hpp"
@@ -232,8 +232,8 @@ class FrontTraining : public Learner {
                         sums_.loss / static_cast<double>(std::max<std::size_t>(sums_.decisions, 1)));
         if (stage != kJudging) line += fmt::format(", true lane allowed {:.1f} %", percent(sums_.reached));
         if (stage == kSearch)
-            line += fmt::format(", kept {:.1f} %, answered {:.1f} %", percent(sums_.kept),
-                                percent(sums_.found));
+            line +=
+                fmt::format(", kept {:.1f} %, answered {:.1f} %", percent(sums_.kept), percent(sums_.found));
         if (stage == kJudging) line += fmt::format(", usable {:.1f} %", percent(sums_.found));
         if (stage != kMoves) line += fmt::format(", risk {:.4f}", sums_.risk / scenes);
         std::vector<FrontFigures> figures;
@@ -425,7 +425,10 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
     }
     std::vector<SceneScore> scores(scenes.size());
     in_parallel(
-        scores.size(), threads, [&] { return make_front_detector({weights, search}); },
+        scores.size(), threads,
+        [&] {
+            return make_front_detector({weights, search});
+        },
         [&](std::unique_ptr<LaneDetector>& detector, std::size_t i) {
             const LaneAnswer answer = detector->detect(
                 scenes[i]->scene, {.time_limit_ms = std::numeric_limits<double>::infinity()});

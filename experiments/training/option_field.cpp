@@ -55,7 +55,8 @@ nlohmann::ordered_json record_of(const OptionFields& fields) {
         const std::string key = field.key;
         if (key.empty()) continue;
         const std::size_t dot = key.find('.');
-        auto& place = dot == std::string::npos ? record[key] : record[key.substr(0, dot)][key.substr(dot + 1)];
+        auto& place =
+            dot == std::string::npos ? record[key] : record[key.substr(0, dot)][key.substr(dot + 1)];
         std::visit(
             [&](const auto& value) {
                 if constexpr (std::is_pointer_v<std::decay_t<decltype(value)>>) {

@@ -212,9 +212,9 @@ class RankNetTraining : public Learner {
         if (count > 0) {
             RankNetParameters gradient;
             if (of_pairs) {
-                (void)pair_loss(
-                    parameters_,
-                    batch_of(all_, std::span(pairs_).subspan(begin_, count), options_.iou_factor), &gradient);
+                (void)pair_loss(parameters_,
+                                batch_of(all_, std::span(pairs_).subspan(begin_, count), options_.iou_factor),
+                                &gradient);
             } else {
                 (void)choice_loss(parameters_, batch_of(all_, std::span(order_).subspan(begin_, count)),
                                   &gradient);
@@ -320,26 +320,25 @@ double choice_loss(const RankNetParameters& parameters, const CandidateScenes& s
 }
 
 OptionFields option_fields(RankNetTrainingOptions& options) {
-    return {
-        {"--units", "units", &options.units, kCount, "number of units of the hidden layer"},
-        {"", "loss", std::string(options.loss == RankLoss::pairs ? "pairs" : "choice")},
-        {"--epochs", "epochs", &options.epochs, kCount, "rounds over the candidates"},
-        {"", "pairs_a_step", &options.pairs_a_step, kCount},
-        {"--scenes-a-step", "scenes_a_step", &options.scenes_a_step, kCount,
-         "scenes to a step of Adam, with --extended"},
-        {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate of Adam"},
-        {"--decay", "weight_decay", &options.weight_decay, kNotNegative,
-         "decay of the network's weights by each step, times the rate"},
-        {"--iou-factor", "iou_factor", &options.iou_factor, kPositive, "lambda_iou of equation (14)"},
-        {"--divergence-penalty", "divergence_penalty", &options.divergence_penalty, kNotNegative,
-         "subtracted from the IoU of a lane that leaves the true one within 20 m; 0 in the paper"},
-        {"--late-divergence-penalty", "late_divergence_penalty", &options.late_divergence_penalty,
-         kNotNegative, "subtracted for a lane that leaves it later"},
-        {"--unusable-penalty", "unusable_penalty", &options.unusable_penalty, kNotNegative,
-         "also subtracted if a lane is not usable: wrong or too short"},
-        {"--leader-share", "leader_share", &options.leader_share, kShare,
-         "share of the pairs that hold the candidate ranked first so far"},
-        {"", "seed", &options.seed}};
+    return {{"--units", "units", &options.units, kCount, "number of units of the hidden layer"},
+            {"", "loss", std::string(options.loss == RankLoss::pairs ? "pairs" : "choice")},
+            {"--epochs", "epochs", &options.epochs, kCount, "rounds over the candidates"},
+            {"", "pairs_a_step", &options.pairs_a_step, kCount},
+            {"--scenes-a-step", "scenes_a_step", &options.scenes_a_step, kCount,
+             "scenes to a step of Adam, with --extended"},
+            {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate of Adam"},
+            {"--decay", "weight_decay", &options.weight_decay, kNotNegative,
+             "decay of the network's weights by each step, times the rate"},
+            {"--iou-factor", "iou_factor", &options.iou_factor, kPositive, "lambda_iou of equation (14)"},
+            {"--divergence-penalty", "divergence_penalty", &options.divergence_penalty, kNotNegative,
+             "subtracted from the IoU of a lane that leaves the true one within 20 m; 0 in the paper"},
+            {"--late-divergence-penalty", "late_divergence_penalty", &options.late_divergence_penalty,
+             kNotNegative, "subtracted for a lane that leaves it later"},
+            {"--unusable-penalty", "unusable_penalty", &options.unusable_penalty, kNotNegative,
+             "also subtracted if a lane is not usable: wrong or too short"},
+            {"--leader-share", "leader_share", &options.leader_share, kShare,
+             "share of the pairs that hold the candidate ranked first so far"},
+            {"", "seed", &options.seed}};
 }
 
 RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {

@@ -5,7 +5,7 @@
 #include "conelane/rld_parameters.hpp"
 #include "conelane/rld_solver.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "model/learned_features.hpp"
 
 #include <concepts>

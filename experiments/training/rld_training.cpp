@@ -2,8 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
-#include "evaluation/files/parameter_tag.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "evaluation/formats/parameter_tag.hpp"
+#include "evaluation/formats/provenance.hpp"
 #include "evaluation/seeded_random.hpp"
 
 #include <algorithm>
@@ -218,7 +218,10 @@ OptionFields option_fields(RldTrainingOptions& options) {
     OptionFields fields = draw_fields(options, false);
     const OptionFields own{
         {"", "parameters_hash", tag_of("", options.parameters).hash.value()},
-        {"--units", "units", &options.units, {0.0, 256.0},
+        {"--units",
+         "units",
+         &options.units,
+         {0.0, 256.0},
          "hidden units of each network; 0 for linear costs, a readable weight a feature"},
         {"--steps", "steps", &options.steps, kCountOrNone, "steps of Adam"},
         {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate, which falls to 0"},
@@ -226,7 +229,10 @@ OptionFields option_fields(RldTrainingOptions& options) {
          "cost by which the true lane has to beat another one, for each edge within 20 m that differs"},
         {"--far-margin", "margin.far", &options.margin.far, kNotNegative, "the same beyond 20 m"},
         {"", "margin.near_m", &options.margin.near_m},
-        {"--max-work", "max_work", &options.max_work, {.least = 1.0},
+        {"--max-work",
+         "max_work",
+         &options.max_work,
+         {.least = 1.0},
          "limit of each exact search, in steps of about a nanosecond; then its best lane counts"}};
     fields.insert(fields.end(), own.begin(), own.end());
     const OptionFields run = run_fields(options, "--report-every");
@@ -248,8 +254,7 @@ RldTrainingRun run_rld_training(const std::vector<std::string>& tracks, const Rl
     const std::vector<Track> courses = annotated_tracks(tracks);
     RldTrainingRun run;
     run.parameters = options.parameters;
-    run.parameters.learned_costs =
-        std::make_shared<const LearnedCosts>(train_rld(courses, options, say));
+    run.parameters.learned_costs = std::make_shared<const LearnedCosts>(train_rld(courses, options, say));
     auto record = nlohmann::ordered_json::parse(describe_training(courses, options));
     record["commit"] = provenance().commit;
     run.record = record.dump();

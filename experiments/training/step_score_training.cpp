@@ -150,7 +150,9 @@ class StepScoreTraining : public Learner {
     StepScores scores;
     bool has_learned = false;
 
-    void set_values(const Eigen::ArrayXd& values) override { scores.values.assign(values.begin(), values.end()); }
+    void set_values(const Eigen::ArrayXd& values) override {
+        scores.values.assign(values.begin(), values.end());
+    }
     [[nodiscard]] bool is_done(std::size_t steps) const override { return steps == all_steps(); }
     /// One scene. In an epoch each one comes once, in random order.
     [[nodiscard]] Step step(std::size_t number) override {

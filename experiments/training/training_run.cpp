@@ -1,13 +1,13 @@
 #include "experiments/training/training_run.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/provenance.hpp"
-#include "evaluation/files/weights_file.hpp"
-#include "evaluation/scenes/scene_options_json.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/formats/scene_set.hpp"
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/formats/weights_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/tracks/track_spec.hpp"
 
 #include <algorithm>
 #include <cmath>

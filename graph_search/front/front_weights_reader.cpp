@@ -23,14 +23,13 @@ std::span<const FrontFeature> features_in(const FrontFeatureList& list, int vers
 /// Reads the keys that begin with `prefix`. The weights of inputs that the version does not have stay
 /// unchanged.
 void read_set(WeightsReader& file, const std::string& prefix, int version, FrontWeightSet& weights) {
-    for_each_weights_list(weights, [&](const FrontNetworkPlace& place, const char* list, std::span<float> numbers,
-                               std::size_t each) {
+    for_each_weights_list(weights, [&](const FrontNetworkPlace& place, const char* list,
+                                       std::span<float> numbers, std::size_t each) {
         const std::vector<FrontFeatureList> inputs =
             each > 0 ? input_lists(place) : std::vector<FrontFeatureList>{};
         std::size_t count = each > 0 ? 0 : numbers.size();
         for (const FrontFeatureList& input : inputs) count += each * features_in(input, version).size();
-        const std::vector<float> given =
-            file.floats(prefix + std::string(place.key) + "_" + list, count);
+        const std::vector<float> given = file.floats(prefix + std::string(place.key) + "_" + list, count);
         if (each == 0) std::ranges::copy(given, numbers.begin());
         auto from = given.begin();
         auto to = numbers.begin();

@@ -142,8 +142,8 @@ std::vector<float> WeightsReader::floats(const std::string& path, std::size_t co
         result.push_back(static_cast<float>(number));
     }
     if (result.size() != count)
-        throw InvalidInput(
-            path, "has " + std::to_string(result.size()) + " numbers, not " + std::to_string(count));
+        throw InvalidInput(path,
+                           "has " + std::to_string(result.size()) + " numbers, not " + std::to_string(count));
     return result;
 }
 
@@ -162,9 +162,9 @@ std::size_t WeightsReader::first_names(const std::string& path, std::span<const 
 void WeightsReader::require_names(const std::string& path, std::span<const std::string_view> known) {
     const std::size_t count = first_names(path, known);
     if (count != known.size())
-        throw InvalidInput(path.substr(0, path.find('.')),
-                           list_below(path) + "has " + std::to_string(count) + " names, not " +
-                               std::to_string(known.size()) + " as the library" + kOtherVersion);
+        throw InvalidInput(path.substr(0, path.find('.')), list_below(path) + "has " + std::to_string(count) +
+                                                               " names, not " + std::to_string(known.size()) +
+                                                               " as the library" + kOtherVersion);
 }
 
 void WeightsReader::require_no_other(std::string_view of) const {

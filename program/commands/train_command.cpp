@@ -1,8 +1,8 @@
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/file_hash.hpp"
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/parameter_file.hpp"
-#include "evaluation/files/weights_file.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/file_hash.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/parameter_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/training/front_training.hpp"
@@ -142,8 +142,8 @@ TrainingRun train_network(TrainingRunOptions run, const ClcTrainingOptions& opti
         run.training.loss = RankLoss::choice;
     }
     if (!options.step_scores.empty()) {
-        run.candidates.search.step_scores = std::make_shared<StepScores>(
-            parsed_file(options.step_scores, [&](const std::string& text) {
+        run.candidates.search.step_scores =
+            std::make_shared<StepScores>(parsed_file(options.step_scores, [&](const std::string& text) {
                 run.steps_record = step_scores_training(text);
                 return parse_step_scores(text);
             }));
@@ -160,8 +160,7 @@ void add_kind_options(CLI::App& command, ClcTrainingOptions& options) {
                      "the network of clc, on its search, by all features and the quality of its choice; "
                      "without it that of clc-paper");
     command
-        .add_flag("--steps", options.steps,
-                  "train the step scores of clc's beam search instead of a network")
+        .add_flag("--steps", options.steps, "train the step scores of clc's beam search instead of a network")
         ->excludes("--extended")
         ->excludes("--variants");
     command
@@ -188,13 +187,12 @@ void add_train_command(CLI::App& program) {
     add_scene_options(command, run.scenes);
     add_hold_out_every(command, run.hold_out_every_m);
     add_field_options(
-        command,
-        {{"--variants", "", &run.variants, kCountOrNone,
-          "number of variants of each track to train on too: stretched, every second one reversed"},
-         {"--candidates", "", &run.candidates.max_per_scene, kCountOrNone,
-          "largest number of candidates of a scene, drawn at random; 0 for all"},
-         {"--iterations", "", &run.candidates.search.iteration_limit, kCount,
-          "limit of each scene's search for candidates"}});
+        command, {{"--variants", "", &run.variants, kCountOrNone,
+                   "number of variants of each track to train on too: stretched, every second one reversed"},
+                  {"--candidates", "", &run.candidates.max_per_scene, kCountOrNone,
+                   "largest number of candidates of a scene, drawn at random; 0 for all"},
+                  {"--iterations", "", &run.candidates.search.iteration_limit, kCount,
+                   "limit of each scene's search for candidates"}});
     add_kind_options(command, *options);
     add_field_options(command, option_fields(options->step_training));
     add_field_options(command, option_fields(run.training));

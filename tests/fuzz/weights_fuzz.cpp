@@ -1,7 +1,7 @@
 // Readers of weights: of `front`, of the network of `clc`, of step scores. Weights that are read are valid,
 // and after writing they read the same.
 
-#include "evaluation/files/weights_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "tests/fuzz/expectations.hpp"
 
 #include <cstddef>
