@@ -4,6 +4,7 @@
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
+#include "evaluation/world/cone_index.hpp"
 #include "experiments/progress/parallel.hpp"
 #include "experiments/progress/progress.hpp"
 

@@ -4,6 +4,9 @@
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/centre_line.hpp"
+#include "evaluation/world/course.hpp"
+#include "evaluation/world/half_disc.hpp"
+#include "evaluation/world/scene_generation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -133,7 +133,7 @@ struct Sums {
     }
 };
 
-class FrontTraining : public Learner {
+class FrontTraining : public GradientLearner {
   public:
     FrontTraining(const std::vector<Track>& courses, const std::vector<SceneSet>& held_out,
                   const FrontTrainingOptions& options, const FrontReport& report)

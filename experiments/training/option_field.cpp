@@ -25,9 +25,8 @@ bool is_valid(const OptionField& field) {
                 const auto [low, high] = *value;
                 return is_in(static_cast<double>(low), field.range) &&
                        is_in(static_cast<double>(high), field.range) && low <= high;
-            } else if constexpr (std::is_pointer_v<Value>) {
-                if constexpr (std::is_arithmetic_v<std::remove_pointer_t<Value>>)
-                    return is_in(static_cast<double>(*value), field.range);
+            } else if constexpr (std::is_arithmetic_v<std::remove_pointer_t<Value>>) {
+                return is_in(static_cast<double>(*value), field.range);
             }
             return true;
         },
@@ -59,10 +58,10 @@ nlohmann::ordered_json record_of(const OptionFields& fields) {
             dot == std::string::npos ? record[key] : record[key.substr(0, dot)][key.substr(dot + 1)];
         std::visit(
             [&](const auto& value) {
-                if constexpr (std::is_pointer_v<std::decay_t<decltype(value)>>) {
-                    place = *value;
-                } else {
+                if constexpr (std::is_same_v<std::decay_t<decltype(value)>, const char*>) {
                     place = value;
+                } else {
+                    place = *value;
                 }
             },
             field.value);

@@ -26,10 +26,10 @@ inline constexpr OptionRange kPositiveShare{0.0, 1.0, true};
 inline constexpr OptionRange kCount{1.0, 1e7};
 inline constexpr OptionRange kCountOrNone{0.0, 1e7};
 
-/// Where the value is; a string of its own is a text for the record.
+/// Where the value is; a `const char*` is a text for the record.
 using OptionValue = std::variant<double*, std::size_t*, std::int64_t*, unsigned*, bool*, std::string*,
                                  std::vector<std::string>*, std::vector<double>*, std::array<std::size_t, 2>*,
-                                 std::array<double, 2>*, std::string>;
+                                 std::array<double, 2>*, const char*>;
 
 /// One option, said once: for the command line (add_field_options), the check of its range, and the record.
 struct OptionField {

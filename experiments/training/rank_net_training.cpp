@@ -188,7 +188,7 @@ CandidateScenes batch_of(const Candidates& all, std::span<const std::size_t> lis
     return batch;
 }
 
-class RankNetTraining : public Learner {
+class RankNetTraining : public GradientLearner {
   public:
     RankNetTraining(const Candidates& all, const RankNetTrainingOptions& options)
         : all_(all),
@@ -237,7 +237,7 @@ class RankNetTraining : public Learner {
     void move(const Adam& adam, double rate, Eigen::ArrayXd& values) const override {
         values.head(parameters_.hidden.size()) *= 1.0 - rate * options_.weight_decay;
         values.tail(parameters_.output.size()) *= 1.0 - rate * options_.weight_decay;
-        Learner::move(adam, rate, values);
+        GradientLearner::move(adam, rate, values);
     }
 
   private:
@@ -321,7 +321,7 @@ double choice_loss(const RankNetParameters& parameters, const CandidateScenes& s
 
 OptionFields option_fields(RankNetTrainingOptions& options) {
     return {{"--units", "units", &options.units, kCount, "number of units of the hidden layer"},
-            {"", "loss", std::string(options.loss == RankLoss::pairs ? "pairs" : "choice")},
+            {"", "loss", options.loss == RankLoss::pairs ? "pairs" : "choice"},
             {"--epochs", "epochs", &options.epochs, kCount, "rounds over the candidates"},
             {"", "pairs_a_step", &options.pairs_a_step, kCount},
             {"--scenes-a-step", "scenes_a_step", &options.scenes_a_step, kCount,

@@ -50,7 +50,7 @@ LearnedCosts initial_costs(const RldTrainingOptions& options) {
     return is_linear ? with_hidden_units(start, options.units, options.seed) : start;
 }
 
-class RldTraining : public Learner {
+class RldTraining : public GradientLearner {
   public:
     RldTraining(const std::vector<Track>& courses, const RldTrainingOptions& options,
                 const std::function<void(const std::string&)>& say)
@@ -215,9 +215,10 @@ LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, st
 }
 
 OptionFields option_fields(RldTrainingOptions& options) {
+    options.parameters_hash = tag_of("", options.parameters).hash.value();
     OptionFields fields = draw_fields(options, false);
     const OptionFields own{
-        {"", "parameters_hash", tag_of("", options.parameters).hash.value()},
+        {"", "parameters_hash", &options.parameters_hash},
         {"--units",
          "units",
          &options.units,

@@ -37,6 +37,7 @@ struct RldTrainingOptions : DrawnTrainingOptions {
     /// Limits and costs to which the learned ones are added. If they have learned costs, the training begins
     /// with them, and linear ones get hidden units; otherwise it begins with shape_as_learned_costs.
     RldParameters parameters = rld_learning_parameters();
+    std::string parameters_hash;  ///< set by option_fields
     RldMargin margin;
     std::size_t units = 16;
     std::int64_t max_work = 15'000'000;

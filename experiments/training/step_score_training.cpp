@@ -133,7 +133,7 @@ class RightLane {
     std::vector<double> probabilities_;  ///< of the competitors
 };
 
-class StepScoreTraining : public Learner {
+class StepScoreTraining : public GradientLearner {
   public:
     StepScoreTraining(const SceneSet& set, const StepScoreTrainingOptions& options)
         : options_(options),

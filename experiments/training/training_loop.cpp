@@ -76,7 +76,7 @@ Eigen::ArrayXd limited_mean(const Eigen::ArrayXd& sum, double count, double most
     return mean;
 }
 
-void learn(Learner& learner, Eigen::ArrayXd values, const LearningLoop& loop) {
+void learn(GradientLearner& learner, Eigen::ArrayXd values, const LearningLoop& loop) {
     oneapi::tbb::task_arena arena(
         std::min(static_cast<int>(loop.threads), oneapi::tbb::info::default_concurrency()));
     const auto finish = [&] { arena.execute([&] { learner.finish(); }); };
@@ -92,7 +92,7 @@ void learn(Learner& learner, Eigen::ArrayXd values, const LearningLoop& loop) {
     if (learner.is_done(steps)) finish();
     while (!learner.is_done(steps)) {
         if (learner.begins_stage(steps)) adam = Adam(values.size(), loop.smallest_deviation);
-        const Learner::Step step = arena.execute([&] { return learner.step(steps); });
+        const GradientLearner::Step step = arena.execute([&] { return learner.step(steps); });
         ++steps;
         if (step.derivatives.size() > 0) {
             adam.add(step.derivatives);

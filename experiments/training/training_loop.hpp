@@ -94,9 +94,9 @@ void set(Weights& weights, const Eigen::ArrayXd& values) {
 [[nodiscard]] Eigen::ArrayXd limited_mean(const Eigen::ArrayXd& sum, double count, double most);
 
 /// What a training learns: the exchangeable part of `learn`. Steps are counted from 0.
-class Learner {
+class GradientLearner {
   public:
-    virtual ~Learner() = default;
+    virtual ~GradientLearner() = default;
 
     /// Whether this many steps are all.
     [[nodiscard]] virtual bool is_done(std::size_t steps) const = 0;
@@ -130,6 +130,6 @@ struct LearningLoop {
 
 /// Learns from the values on, step by step. A loop that was stopped and resumes from its checkpoint gives the
 /// same to the last bit. Throws InputError if the checkpoint is not one of that identity and size.
-void learn(Learner& learner, Eigen::ArrayXd values, const LearningLoop& loop);
+void learn(GradientLearner& learner, Eigen::ArrayXd values, const LearningLoop& loop);
 
 }  // namespace conelane::experiments

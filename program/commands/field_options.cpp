@@ -24,7 +24,7 @@ void add_field_options(CLI::App& command, const OptionFields& fields) {
                                      std::is_same_v<Value, std::vector<double>*>) {
                     CLI::Option* const list = command.add_option(name, *value, field.help)->delimiter(',');
                     if (!value->empty()) list->capture_default_str();
-                } else if constexpr (std::is_pointer_v<Value>) {
+                } else if constexpr (!std::is_same_v<Value, const char*>) {
                     CLI::Option* const option =
                         command.add_option(name, *value, field.help)->capture_default_str();
                     if constexpr (std::is_integral_v<std::remove_pointer_t<Value>>) {
