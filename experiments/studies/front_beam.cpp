@@ -2,8 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/options/shared_options.hpp"

@@ -1,8 +1,6 @@
 #include "experiments/tuning/parameter_ranges.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace conelane::experiments {
 namespace {
@@ -57,10 +55,7 @@ std::span<const TunedParameter> tuned_parameters(const RldParameters& start) {
 std::vector<double> to_unit_cube(const RldParameters& parameters) {
     std::vector<double> point;
     for (const TunedParameter& tuned : tuned_parameters(parameters)) {
-        const double value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
-        point.push_back(tuned.logarithmic
-                            ? std::log(value / tuned.lowest) / std::log(tuned.highest / tuned.lowest)
-                            : (value - tuned.lowest) / (tuned.highest - tuned.lowest));
+        point.push_back(share_of(tuned, std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest)));
     }
     return point;
 }
@@ -73,10 +68,7 @@ RldParameters from_unit_cube(std::span<const double> point, const RldParameters&
     const std::span<const TunedParameter> tuned_ones = tuned_parameters(rest);
     for (std::size_t i = 0; i < tuned_ones.size(); ++i) {
         const TunedParameter& tuned = tuned_ones[i];
-        const double value = tuned.logarithmic
-                                 ? tuned.lowest * std::pow(tuned.highest / tuned.lowest, point[i])
-                                 : tuned.lowest + point[i] * (tuned.highest - tuned.lowest);
-        parameters.*tuned.value = std::clamp(rounded(value), tuned.lowest, tuned.highest);
+        parameters.*tuned.value = std::clamp(rounded(value_at(tuned, point[i])), tuned.lowest, tuned.highest);
     }
     return parameters;
 }

@@ -1,7 +1,6 @@
 #include "graph_search/front/front_features.hpp"
 
 #include "graph_search/front/front_extend_features.hpp"
-#include "graph_search/front/front_feature_scales.hpp"
 #include "graph_search/front/front_feature_schema.hpp"
 
 #include <algorithm>

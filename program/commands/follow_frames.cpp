@@ -6,8 +6,8 @@
 #include "evaluation/formats/drivable_lane_file.hpp"
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/frame_file.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "program/commands/unanswered.hpp"
 

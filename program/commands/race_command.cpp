@@ -1,18 +1,18 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/track_spec.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/scene_generation.hpp"
+#include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/methods/learners.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/course_families.hpp"
 
 #include <algorithm>
 #include <atomic>

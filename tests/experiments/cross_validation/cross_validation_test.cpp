@@ -2,10 +2,10 @@
 
 #include "conelane/learned_costs.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
 #include "tests/support/program_fixture.hpp"
@@ -59,6 +59,8 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 find_method(detector).learned_maker(path("cv/folds/" + fold), options);
             EXPECT_EQ(maker(scenes[i].track)->answer(scenes[i].scene).answer.lane, lanes[i].answer.lane)
                 << scenes[i].scene.id;
+            if (lanes[i].answer.status == LaneStatus::found)
+                EXPECT_TRUE(lanes[i].answer.trusted_m) << "checked to be drivable, as in a comparison";
         }
     }
 }

@@ -5,9 +5,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "experiments/tuning/evaluation.hpp"
-#include "experiments/tuning/objective_sums.hpp"
 #include "experiments/tuning/tuner.hpp"
-#include "experiments/tuning/weight_rounds.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/testing.hpp"
 
