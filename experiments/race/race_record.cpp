@@ -1,6 +1,7 @@
 #include "experiments/race/race_record.hpp"
 
-#include "experiments/studies/text_table.hpp"
+#include "evaluation/scoring/statistics.hpp"
+#include "evaluation/scoring/text_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,15 +15,6 @@ namespace conelane::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::optional<double> quantile(std::vector<double> values, double share) {
-    if (values.empty()) return std::nullopt;
-    std::ranges::sort(values);
-    const double rank = share * static_cast<double>(values.size() - 1);
-    const auto low = static_cast<std::size_t>(rank);
-    const std::size_t high = std::min(low + 1, values.size() - 1);
-    return values[low] + (rank - static_cast<double>(low)) * (values[high] - values[low]);
-}
 
 /// The different keys, in the order in which they first occur.
 template <typename Key, typename Of>
@@ -45,10 +37,9 @@ struct Sums {
     double hit = 0.0;
     double time_s = 0.0;
     double old_s = 0.0;
-    std::vector<double> departures_m;
-    std::vector<double> errors_m;
-    double unsteady = 0.0;
-    std::size_t with_pairs = 0;
+    Sample departures_m;
+    Sample errors_m;
+    Sample unsteady;
 
     void add(const RaceResult& result) {
         ++races;
@@ -61,12 +52,9 @@ struct Sums {
         hit += result.cones_hit / static_cast<double>(std::max(1, result.finished_laps + !result.finished()));
         time_s += result.time_s;
         old_s += result.old_path_s;
-        if (result.departure_m) departures_m.push_back(*result.departure_m);
-        if (result.lateral_error_p95_m) errors_m.push_back(*result.lateral_error_p95_m);
-        if (result.unsteady_share) {
-            unsteady += *result.unsteady_share;
-            ++with_pairs;
-        }
+        departures_m.add(result.departure_m);
+        errors_m.add(result.lateral_error_p95_m);
+        unsteady.add(result.unsteady_share);
     }
 };
 
@@ -110,10 +98,10 @@ std::string race_table(std::span<const Heat> heats, int laps) {
             {row.first, fmt::format("{}", row.second), std::to_string(sums.races),
              percent(share(sums.finished, sums.races), 1),
              percent(share(sums.laps, sums.races * static_cast<std::size_t>(laps)), 1),
-             fixed(quantile(sums.departures_m, 0.5), 0), fixed(sums.hit / count, 2),
-             fixed(quantile(sums.errors_m, 0.5), 2), percent(share(sums.without, sums.frames), 2),
+             fixed(sums.departures_m.median(), 0), fixed(sums.hit / count, 2),
+             fixed(sums.errors_m.median(), 2), percent(share(sums.without, sums.frames), 2),
              sums.time_s > 0.0 ? percent(sums.old_s / sums.time_s, 2) : "-",
-             sums.with_pairs == 0 ? "-" : percent(sums.unsteady / static_cast<double>(sums.with_pairs), 1),
+             percent(sums.unsteady.mean(), 1),
              percent(share(sums.wrong, sums.frames), 2)});
     }
     std::string text = table.text();
@@ -125,22 +113,22 @@ std::string race_table(std::span<const Heat> heats, int laps) {
              return Place(heat.course, Row(heat.detector, heat.false_positive_rate));
          })) {
         std::size_t races = 0;
-        std::vector<double> driven_m;
+        Sample driven_m;
         std::vector<std::string> how;
         for (const Heat& heat : heats) {
             if (Place(heat.course, Row(heat.detector, heat.false_positive_rate)) != place) continue;
             ++races;
             if (heat.result.finished()) continue;
-            driven_m.push_back(heat.result.driven_m);
+            driven_m.add(heat.result.driven_m);
             const std::string word(to_string(heat.result.end));
             if (std::ranges::find(how, word) == how.end()) how.push_back(word);
         }
-        if (driven_m.empty()) continue;
+        if (driven_m.values().empty()) continue;
         any = true;
         std::string words;
         for (const std::string& word : how) words += (words.empty() ? "" : ", ") + word;
         lost.add({place.first, place.second.first, fmt::format("{}", place.second.second),
-                  fmt::format("{} of {}", driven_m.size(), races), fixed(quantile(driven_m, 0.5), 0), words});
+                  fmt::format("{} of {}", driven_m.values().size(), races), fixed(driven_m.median(), 0), words});
     }
     if (any) text += "\n" + lost.text();
     return text;
@@ -150,12 +138,12 @@ std::string answer_time_table(std::span<const Heat> heats) {
     TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
     for (const std::string& detector :
          distinct<std::string>(heats, [](const Heat& heat) { return heat.detector; })) {
-        std::vector<double> times_ms;
+        Sample times_ms;
         for (const Heat& heat : heats) {
             if (heat.detector != detector) continue;
-            times_ms.insert(times_ms.end(), heat.result.answer_ms.begin(), heat.result.answer_ms.end());
+            for (const double answer_ms : heat.result.answer_ms) times_ms.add(answer_ms);
         }
-        table.add({detector, fixed(quantile(times_ms, 0.5), 3), fixed(quantile(times_ms, 0.99), 3)});
+        table.add({detector, fixed(times_ms.median(), 3), fixed(times_ms.quantile(0.99), 3)});
     }
     return table.text();
 }

@@ -34,7 +34,7 @@ std::string quoted(const std::string& name) {
     return "'" + name + "'";
 }
 
-std::string_view run_status(const BackendRow& row, double limit_ms) {
+std::string_view run_status(const SolveRow& row, double limit_ms) {
     if (row.refuted) return "other";  // a wrong answer
     switch (row.status) {
         case SolveStatus::optimal:
@@ -53,7 +53,7 @@ std::string number(double value) {
     return std::isfinite(value) ? fmt::format("{:.9g}", value) : "?";
 }
 
-std::string description(std::span<const std::string> algorithms, const BackendOptions& options) {
+std::string description(std::span<const std::string> algorithms, const SolveOptions& options) {
     std::vector<std::string> problem, relaxation;
     for (const NamedFeature& feature : named({})) {
         auto& group = problem.size() < kProblemFeatures ? problem : relaxation;
@@ -86,12 +86,12 @@ std::map<std::string, std::size_t> folds_of(const std::set<SizeAndScene>& instan
 
 }  // namespace
 
-void write_aslib_scenario(const std::filesystem::path& folder, std::span<const BackendRow> rows,
-                          const BackendOptions& options) {
+void write_aslib_scenario(const std::filesystem::path& folder, std::span<const SolveRow> rows,
+                          const SolveOptions& options) {
     std::set<SizeAndScene> instances;
     std::vector<std::string> algorithms;
     std::ostringstream runs;
-    for (const BackendRow& row : rows) {
+    for (const SolveRow& row : rows) {
         if (row.backend.warm_start) continue;
         instances.emplace(row.size, row.scene);
         const std::string label = row.backend.label();
@@ -118,8 +118,7 @@ void write_aslib_scenario(const std::filesystem::path& folder, std::span<const B
     const std::map<std::string, std::size_t> folds = folds_of(instances);
     for (const SizeAndScene& instance : instances) {
         const auto& [size, scene] = instance;
-        const Scene cones = size == kAllVisible ? scene->scene : nearest_ahead(scene->scene, size);
-        const InstanceFeatures features = features_of(cones, options.parameters);
+        const InstanceFeatures features = features_of(cones_of(*scene, size), options.parameters);
         const std::string start = instance_name(instance) + ",1";
         values << start;
         for (const NamedFeature& feature : named(features)) values << ',' << number(feature.value);

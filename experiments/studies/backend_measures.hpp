@@ -1,6 +1,7 @@
 #pragma once
 
-#include "experiments/studies/backends.hpp"
+#include "experiments/studies/solve_rows.hpp"
+#include "experiments/studies/study.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -8,16 +9,18 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 namespace conelane::experiments {
+
+/// The rows that a figure is of.
+struct MeasuredGroup {
+    std::size_t size = 0;
+    std::string condition = {};  ///< empty: all scenes
+};
 
 /// Summary of the runs of one backend at one size and condition. A run is a scene in one order of its cones,
 /// rows and columns. It is solved if its optimum, or that there is none, was proven within the limit, the
 /// checker passes it and no other backend refutes it. Definitions: docs/measures.md.
-struct BackendSummary {
-    std::size_t size = 0;
-    std::string condition;  ///< empty: all scenes
+struct BackendSummary : MeasuredGroup {
     std::string backend;
     std::size_t scenes = 0;
     std::size_t runs = 0;
@@ -37,17 +40,16 @@ struct BackendSummary {
     std::size_t integrals = 0;                  ///< scenes with steps and a known lane graph
     std::optional<double> primal_integral_ms;   ///< means over these
     std::optional<double> dual_integral_ms;
-    std::vector<double> profile;  ///< at kProfileRatios
+    std::vector<double> profile;  ///< at profile_ratios()
     std::size_t won = 0;          ///< runs that it solves first
+    std::optional<std::size_t> peak_bytes;  ///< of its block
 };
 
 /// Multiples of the fastest time at which profiles are evaluated: 1 to 1000, 25 a decade.
 [[nodiscard]] std::span<const double> profile_ratios();
 
 /// Wilcoxon's test on two backends: geometric means of a scene's times, failures at the limit.
-struct BackendPair {
-    std::size_t size = 0;
-    std::string condition;
+struct BackendPair : MeasuredGroup {
     std::string first;
     std::string second;
     std::size_t scenes = 0;  ///< whose times differ
@@ -57,17 +59,14 @@ struct BackendPair {
 };
 
 /// Single best against virtual best solver.
-struct BackendSelection {
-    std::size_t size = 0;
-    std::string condition;
+struct BackendSelection : MeasuredGroup {
     std::string single_best;
     double single_par10_ms = 0.0;
     double virtual_par10_ms = 0.0;
 };
 
 /// Gaps after some time, over all scenes with steps and a known lane graph.
-struct BackendGap {
-    std::size_t size = 0;
+struct BackendGap : MeasuredGroup {
     std::string backend;
     double time_ms = 0.0;
     double mean_primal_gap = 0.0;
@@ -79,18 +78,16 @@ struct BackendMeasures {
     std::vector<BackendPair> pairs;
     std::vector<BackendSelection> selections;
     std::vector<BackendGap> gaps;
+
+    /// For a terminal: summaries, pairs and selections.
+    [[nodiscard]] std::string table() const;
+    /// Rows for a file, each with "row": summary, pair, selection or gap.
+    void add_rows_to(StudyResult& result) const;
 };
 
 /// First all scenes of each size; then, if scenes have several conditions, each condition. Backends that did
 /// not solve the same runs as the first one (a warm start has no permutations) are compared on the scenes in
 /// their original order.
-[[nodiscard]] BackendMeasures measures_of(std::span<const BackendRow> rows, double time_limit_ms);
-
-/// Rows for a file, each with "row": summary, pair, selection or gap.
-[[nodiscard]] std::vector<nlohmann::ordered_json> to_json(const BackendMeasures& measures);
-
-/// For a terminal: summaries with peak memory, the pairs, the selections.
-[[nodiscard]] std::string measures_table(const BackendMeasures& measures,
-                                         std::span<const BackendBlock> blocks);
+[[nodiscard]] BackendMeasures measures_of(const SolveResults& results, double time_limit_ms);
 
 }  // namespace conelane::experiments

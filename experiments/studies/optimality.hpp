@@ -2,22 +2,16 @@
 
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scenes/scene_set.hpp"
 #include "evaluation/scoring/score.hpp"
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace conelane::experiments {
-
-class Study;
-
-/// Graph searches against the proven optimum of one objective or several.
-[[nodiscard]] std::unique_ptr<Study> make_optimality_study();
 
 /// An objective: (29) with the costs that the parameters add to it.
 struct NamedCosts {
@@ -67,11 +61,10 @@ struct OptimalityRow {
 };
 
 /// Each scene that counts (see `counts`) under each objective, in the order of the scenes, then of the
-/// objectives; the same with any number of threads. `scenes` must outlive the rows. Throws InvalidInput where
+/// objectives; the same with any number of threads. `set` must outlive the rows. Throws InvalidInput where
 /// there is no such detector or the one that has to enumerate does not, and naming the scene where a lane has
 /// a lower objective than an optimum said to be proven or the independent checker rejects a lane graph.
-[[nodiscard]] std::vector<OptimalityRow> optimality_rows(std::span<const AnnotatedScene> scenes,
-                                                         const TrackBoundariesByName& tracks,
+[[nodiscard]] std::vector<OptimalityRow> optimality_rows(const SceneSet& set,
                                                          const OptimalityOptions& options);
 
 /// By objective, condition and rate: how near the candidates are to the optimum; what all lanes are worth;
