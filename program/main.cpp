@@ -1,7 +1,7 @@
 // The program `conelane`: one sub-command for each stage from tracks to tables.
 
-#include "evaluation/files/interruption.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "evaluation/formats/interruption.hpp"
+#include "evaluation/formats/provenance.hpp"
 #include "experiments/options/argument_words.hpp"
 #include "experiments/options/help_formatter.hpp"
 #include "experiments/options/shared_options.hpp"

@@ -1,6 +1,6 @@
 #include "evaluation/outside/finished_lanes.hpp"
 
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/outside/outside_program.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 

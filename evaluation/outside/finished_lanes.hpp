@@ -1,8 +1,8 @@
 #pragma once
 
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <span>
 #include <vector>

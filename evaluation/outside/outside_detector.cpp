@@ -1,8 +1,8 @@
 #include "evaluation/outside/outside_detector.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/outside/solver_program.hpp"
 
 #include <algorithm>

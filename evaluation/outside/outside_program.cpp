@@ -1,8 +1,8 @@
 #include "evaluation/outside/outside_program.hpp"
 
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
-#include "evaluation/scenes/scene_file.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/outside/child_process.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "evaluation/outside/point_snapping.hpp"
 
-#include "evaluation/scenes/cone_index.hpp"
+#include "evaluation/world/cone_index.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>

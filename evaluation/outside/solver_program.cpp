@@ -1,9 +1,9 @@
 #include "evaluation/outside/solver_program.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
-#include "evaluation/files/program_files.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/program_files.hpp"
+#include "evaluation/input_error.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

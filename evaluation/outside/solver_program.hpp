@@ -1,7 +1,7 @@
 #pragma once
 
-#include "evaluation/files/interruption.hpp"
-#include "evaluation/files/program_solution.hpp"
+#include "evaluation/formats/interruption.hpp"
+#include "evaluation/formats/program_solution.hpp"
 #include "evaluation/outside/child_process.hpp"
 #include "model/binary_program.hpp"
 

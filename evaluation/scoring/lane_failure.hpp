@@ -1,9 +1,9 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/tracks/track_boundaries.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track_boundaries.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -1,10 +1,10 @@
 #include "evaluation/scoring/score.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/ground_truth.hpp"
 #include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/driven_path.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "conelane/lane_detector.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/calibration.hpp"
 #include "evaluation/scoring/centre_line_error.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "evaluation/tracks/track_boundaries.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track_boundaries.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,8 +1,8 @@
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 
-#include "evaluation/scenes/scene_file.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/world/generated_tracks.hpp"
+#include "evaluation/world/scene_generation.hpp"
 
 #include <cstdlib>
 #include <iterator>

@@ -2,8 +2,8 @@
 // (per iteration), the ranking (per candidate), and a whole detection. Scenes are of generated tracks, 30 %
 // false positives, 30 m range; the scenes take turns.
 
-#include "evaluation/scenes/scene_generation.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
 #include "graph_search/clc/candidate_search.hpp"
 #include "graph_search/clc/clc_detector.hpp"

@@ -4,8 +4,8 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/planner.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/course.hpp"
 #include "experiments/race/race.hpp"
 

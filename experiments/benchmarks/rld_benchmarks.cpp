@@ -3,7 +3,7 @@
 // or those of the file that the environment variable CONELANE_SCENES names. One iteration is one scene; the
 // scenes take turns.
 
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"

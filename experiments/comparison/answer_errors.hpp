@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
 
 #include <cstddef>
 #include <string>

@@ -1,7 +1,7 @@
 #include "experiments/comparison/echo_floor.hpp"
 
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/json_node.hpp"
 #include "experiments/comparison/runner.hpp"
 
 #include <algorithm>

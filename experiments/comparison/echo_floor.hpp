@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <filesystem>
 #include <span>

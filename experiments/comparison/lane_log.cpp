@@ -1,6 +1,6 @@
 #include "experiments/comparison/lane_log.hpp"
 
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 
 #include <cerrno>
 #include <cstdint>

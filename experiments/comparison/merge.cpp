@@ -1,7 +1,7 @@
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/left_out_scenes.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
+#include "evaluation/formats/left_out_scenes.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 

@@ -1,8 +1,8 @@
 #include "experiments/comparison/results.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/progress/progress.hpp"

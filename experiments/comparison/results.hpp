@@ -1,12 +1,12 @@
 #pragma once
 
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/centre_line_error.hpp"
 #include "evaluation/scoring/lane_failure.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/score_table.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 
 #include <cstddef>

@@ -1,12 +1,12 @@
 #include "experiments/comparison/run_record.hpp"
 
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/file_hash.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
-#include "evaluation/files/parameter_tag.hpp"
-#include "evaluation/files/provenance.hpp"
-#include "evaluation/scenes/scene_options_json.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/file_hash.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/parameter_tag.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "evaluation/files/folder_lock.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/scene_set.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/comparison/runner.hpp"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/lane_file.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/methods/method.hpp"
 
 #include <functional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/left_out_scenes.hpp"
+#include "evaluation/formats/left_out_scenes.hpp"
 #include "experiments/comparison/results.hpp"
 
 #include <cstddef>

@@ -1,11 +1,11 @@
 #include "experiments/cross_check/case_file.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/json_node.hpp"
-#include "evaluation/files/parameter_file.hpp"
-#include "evaluation/files/program_files.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/parameter_file.hpp"
+#include "evaluation/formats/program_files.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "model/lane_graph_model.hpp"
 
 #include <array>

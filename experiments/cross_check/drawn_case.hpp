@@ -3,7 +3,7 @@
 #include "conelane/formulation.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/scene.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <cstddef>
 #include <cstdint>

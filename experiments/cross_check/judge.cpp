@@ -3,8 +3,8 @@
 #include "conelane/check.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/checking/certificate_verifier.hpp"
-#include "evaluation/checking/lane_graph_search.hpp"
+#include "evaluation/proofs/certificate_verifier.hpp"
+#include "evaluation/proofs/lane_graph_search.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 

@@ -1,10 +1,10 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/file_hash.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/scenes/scene_options_json.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/file_hash.hpp"
+#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/input_error.hpp"
 
 #include <algorithm>
 #include <iterator>

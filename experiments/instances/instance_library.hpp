@@ -2,7 +2,7 @@
 
 #include "conelane/formulation.hpp"
 #include "conelane/rld_parameters.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "model/binary_program.hpp"
 
 #include <array>

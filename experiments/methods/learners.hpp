@@ -2,7 +2,7 @@
 
 #include "conelane/lane_detector.hpp"
 #include "conelane/rld_parameters.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/world/scene_generation.hpp"
 
 #include <cstddef>
 #include <filesystem>

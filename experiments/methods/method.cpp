@@ -2,9 +2,9 @@
 
 #include "conelane/invalid_input.hpp"
 #include "detectors/drivable/drivable_answers.hpp"
-#include "evaluation/checking/answer_check.hpp"
 #include "evaluation/outside/outside_program.hpp"
 #include "evaluation/outside/outside_solver.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "model/deadline.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "detectors/recipe.hpp"
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
 #include "experiments/methods/learners.hpp"
 

@@ -2,10 +2,10 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/parameter_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/parameter_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/options/whole_number.hpp"
 
 #include <algorithm>

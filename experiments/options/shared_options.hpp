@@ -1,8 +1,8 @@
 #pragma once
 
 #include "conelane/detectors.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/scene_generation.hpp"
 
 #include <cstdint>
 #include <memory>

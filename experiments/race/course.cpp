@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/tracks/centre_line.hpp"
+#include "evaluation/world/centre_line.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>

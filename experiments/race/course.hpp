@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/planner.hpp"
-#include "evaluation/tracks/track.hpp"
+#include "evaluation/world/track.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "experiments/race/world.hpp"
 
-#include "evaluation/scenes/half_disc.hpp"
-#include "evaluation/scenes/persistent_points.hpp"
 #include "evaluation/seeded_random.hpp"
+#include "evaluation/world/half_disc.hpp"
+#include "evaluation/world/persistent_points.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/planner.hpp"
-#include "evaluation/scenes/condition.hpp"
+#include "evaluation/world/condition.hpp"
 #include "experiments/race/course.hpp"
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 #include "experiments/report/package.hpp"
 
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/output_stream.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/output_stream.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/report/archive.hpp"
 
 #include <cerrno>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/files/interruption.hpp"
+#include "evaluation/formats/interruption.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "experiments/report/picture.hpp"
 
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/scenes/condition.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/world/condition.hpp"
 #include "experiments/report/package.hpp"
 
 #include <algorithm>

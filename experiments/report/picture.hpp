@@ -1,9 +1,9 @@
 #pragma once
 
 #include "conelane/drivable_lane.hpp"
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
-#include "evaluation/tracks/track_boundaries.hpp"
+#include "evaluation/formats/lane_file.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track_boundaries.hpp"
 
 #include <filesystem>
 #include <string>

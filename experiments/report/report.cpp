@@ -1,10 +1,10 @@
 #include "experiments/report/report.hpp"
 
 #include "conelane/drivable_lane.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/scenes/condition.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/scoring/published_figures.hpp"
+#include "evaluation/world/condition.hpp"
 #include "experiments/report/package.hpp"
 
 #include <string>

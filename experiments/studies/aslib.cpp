@@ -1,8 +1,8 @@
 #include "experiments/studies/aslib.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/instances/instance_features.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "evaluation/formats/provenance.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/whole_number.hpp"

@@ -1,9 +1,9 @@
 #include "experiments/studies/confidence_and_colour.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/json_node.hpp"
-#include "evaluation/files/parameter_file.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/parameter_file.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/rld_parameters.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
 

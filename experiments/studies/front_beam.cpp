@@ -1,6 +1,6 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/progress/progress.hpp"

@@ -1,7 +1,7 @@
 #include "experiments/studies/machine.hpp"
 
 #include "conelane/solve_scene.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "model/deadline.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"

@@ -1,8 +1,8 @@
 #include "experiments/studies/noise.hpp"
 
 #include "conelane/detectors.hpp"
-#include "evaluation/scenes/half_disc.hpp"
-#include "evaluation/scenes/scene_draws.hpp"
+#include "evaluation/world/half_disc.hpp"
+#include "evaluation/world/scene_draws.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"

@@ -5,7 +5,7 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/checking/answer_check.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"

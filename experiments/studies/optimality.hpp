@@ -2,7 +2,7 @@
 
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/scoring/score.hpp"
 
 #include <cstddef>

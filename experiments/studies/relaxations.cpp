@@ -1,5 +1,5 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/ground_truth.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "experiments/studies/solve_study.hpp"
 #include "experiments/studies/study.hpp"

@@ -2,7 +2,7 @@
 
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/scoring/solver_measures.hpp"
 #include "experiments/comparison/answer_errors.hpp"
 #include "experiments/studies/backend.hpp"

@@ -1,6 +1,6 @@
 #include "experiments/studies/study.hpp"
 
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 
 #include <filesystem>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/comparison/answer_errors.hpp"
 #include "experiments/studies/row_fields.hpp"
 

@@ -1,10 +1,10 @@
 #include "experiments/training/candidate_lists.hpp"
 
-#include "evaluation/scenes/cone_index.hpp"
 #include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
+#include "evaluation/world/cone_index.hpp"
 #include "experiments/progress/progress.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
-#include "evaluation/tracks/track_boundaries.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track_boundaries.hpp"
 #include "experiments/training/front_truth.hpp"
 #include "graph_search/front/front_search.hpp"
 

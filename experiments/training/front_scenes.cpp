@@ -1,11 +1,11 @@
 #include "experiments/training/front_scenes.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/course.hpp"
-#include "evaluation/scenes/half_disc.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/tracks/centre_line.hpp"
+#include "evaluation/world/centre_line.hpp"
+#include "evaluation/world/course.hpp"
+#include "evaluation/world/half_disc.hpp"
+#include "evaluation/world/scene_generation.hpp"
 
 #include <algorithm>
 #include <array>

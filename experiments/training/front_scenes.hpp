@@ -1,8 +1,8 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
-#include "evaluation/tracks/track.hpp"
-#include "evaluation/tracks/track_boundaries.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track.hpp"
+#include "evaluation/world/track_boundaries.hpp"
 
 #include <array>
 #include <cstddef>

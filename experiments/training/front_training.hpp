@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/scoring/calibration.hpp"
 #include "experiments/training/front_judge_learner.hpp"
 #include "experiments/training/front_learner.hpp"

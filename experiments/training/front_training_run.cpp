@@ -1,8 +1,8 @@
 #include "experiments/training/front_training_run.hpp"
 
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/provenance.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/training/front_checkpoint.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "experiments/training/front_truth.hpp"
 
-#include "evaluation/scenes/cone_index.hpp"
 #include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/score.hpp"
+#include "evaluation/world/cone_index.hpp"
 
 #include <algorithm>
 

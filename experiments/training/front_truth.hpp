@@ -1,8 +1,8 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
-#include "evaluation/tracks/track_boundaries.hpp"
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track_boundaries.hpp"
 #include "graph_search/front/front_map.hpp"
 
 #include <array>

@@ -1,6 +1,6 @@
 #include "experiments/training/rld_learner.hpp"
 
-#include "evaluation/scenes/cone_index.hpp"
+#include "evaluation/world/cone_index.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "conelane/learned_costs.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/rld_solver.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "model/learned_features.hpp"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
-#include "evaluation/files/parameter_tag.hpp"
+#include "evaluation/formats/parameter_tag.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/training/adam.hpp"
 #include "experiments/training/training_checkpoint.hpp"

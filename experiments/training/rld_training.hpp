@@ -2,7 +2,7 @@
 
 #include "conelane/learned_costs.hpp"
 #include "conelane/rld_parameters.hpp"
-#include "evaluation/tracks/track.hpp"
+#include "evaluation/world/track.hpp"
 #include "experiments/training/front_scenes.hpp"
 #include "experiments/training/rld_learner.hpp"
 

@@ -1,7 +1,7 @@
 #include "experiments/training/rld_training_run.hpp"
 
-#include "evaluation/files/provenance.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/formats/track_spec.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "graph_search/clc/candidate_search.hpp"
 #include "graph_search/clc/lane_beam.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/tracks/track.hpp"
+#include "evaluation/world/track.hpp"
 
 #include <cstddef>
 #include <cstdint>

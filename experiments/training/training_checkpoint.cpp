@@ -1,8 +1,8 @@
 #include "experiments/training/training_checkpoint.hpp"
 
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/input_error.hpp"
 
 #include <filesystem>
 #include <vector>

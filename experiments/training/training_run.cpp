@@ -1,10 +1,10 @@
 #include "experiments/training/training_run.hpp"
 
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/provenance.hpp"
-#include "evaluation/scenes/scene_options_json.hpp"
-#include "evaluation/scenes/scene_set.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/provenance.hpp"
+#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/formats/scene_set.hpp"
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/training/track_variant.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/training/candidate_lists.hpp"
 #include "experiments/training/rank_net_training.hpp"
 #include "experiments/training/step_score_training.hpp"

@@ -1,8 +1,8 @@
 #include "experiments/tuning/detector_tuning.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/json_node.hpp"
-#include "evaluation/files/known_keys.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/known_keys.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 

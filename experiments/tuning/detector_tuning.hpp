@@ -1,7 +1,7 @@
 #pragma once
 
 #include "detectors/recipe.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "experiments/tuning/evaluation.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/ground_truth.hpp"
 #include "evaluation/scoring/score.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "conelane/rld_parameters.hpp"
 #include "conelane/rld_solver.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "experiments/tuning/evaluation_log.hpp"
 
 #include "conelane/rld_parameters.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/input_error.hpp"
 
 #include <cerrno>
 #include <fstream>

@@ -1,9 +1,9 @@
 #include "experiments/tuning/failure_causes.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/checking/answer_check.hpp"
-#include "evaluation/scenes/ground_truth.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "evaluation/scoring/score.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "experiments/tuning/objective_sums.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 

@@ -2,7 +2,7 @@
 
 #include "conelane/lane.hpp"
 #include "conelane/rld_parameters.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/tuning/evaluation.hpp"
 
 #include <array>

@@ -1,8 +1,8 @@
 #include "experiments/tuning/weight_rounds.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/checking/answer_check.hpp"
-#include "evaluation/scenes/ground_truth.hpp"
+#include "evaluation/proofs/answer_check.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "experiments/tuning/weight_fit.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 

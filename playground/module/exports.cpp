@@ -8,8 +8,8 @@
 #include "conelane/planner.hpp"
 #include "conelane/solve_scene.hpp"
 #include "conelane/version.hpp"
-#include "evaluation/tracks/centre_line.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/centre_line.hpp"
+#include "evaluation/world/generated_tracks.hpp"
 #include "model/deadline.hpp"
 #include "playground/module/json_text.hpp"
 

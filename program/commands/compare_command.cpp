@@ -1,5 +1,5 @@
 #include "evaluation/scoring/statistics.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"

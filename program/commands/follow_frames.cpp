@@ -2,14 +2,14 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/drivable_lane_file.hpp"
-#include "evaluation/files/file_text.hpp"
-#include "evaluation/files/front_weights_file.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/files/json_node.hpp"
-#include "evaluation/files/plan_file.hpp"
-#include "evaluation/scenes/frame_file.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/drivable_lane_file.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/frame_file.hpp"
+#include "evaluation/formats/front_weights_file.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/plan_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "program/commands/unanswered.hpp"
 
 #include <cerrno>

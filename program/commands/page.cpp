@@ -1,6 +1,6 @@
 #include "program/commands/page.hpp"
 
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
 

@@ -1,4 +1,4 @@
-#include "evaluation/files/figure_file.hpp"
+#include "evaluation/formats/figure_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/studies/study.hpp"
 #include "program/commands/commands.hpp"

@@ -1,4 +1,4 @@
-#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/formats/parameter_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/training/rld_training_run.hpp"

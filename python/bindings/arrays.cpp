@@ -3,7 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "evaluation/scenes/cone_covariance.hpp"
+#include "evaluation/formats/cone_json.hpp"
 
 #include <algorithm>
 #include <array>

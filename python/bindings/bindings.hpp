@@ -1,8 +1,8 @@
 #pragma once
 
 #include "conelane/detectors.hpp"
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/formats/lane_file.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 #include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "python/bindings/arrays.hpp"

@@ -1,6 +1,6 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/version.hpp"
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <cstring>

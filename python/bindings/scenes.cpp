@@ -1,7 +1,7 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/scene_file.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 

@@ -4,7 +4,7 @@
 #include "conelane/core_solvers.hpp"
 #include "conelane/detectors.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/failing_allocations.hpp"
 #include "tests/support/no_time_limit.hpp"

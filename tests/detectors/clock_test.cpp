@@ -4,7 +4,7 @@
 #include "conelane/core_solvers.hpp"
 #include "conelane/detectors.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "graph_search/front/front_search.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/clocks/fake_system_clocks.hpp"

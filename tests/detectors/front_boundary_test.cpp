@@ -3,9 +3,9 @@
 #include "graph_search/front/front_boundary.hpp"
 
 #include "conelane/detectors.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "model/geometry.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/no_time_limit.hpp"

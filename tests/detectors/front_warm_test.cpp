@@ -3,7 +3,7 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/scoring/centre_line_error.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "graph_search/front/front_detector.hpp"

@@ -2,7 +2,7 @@
 
 #include "conelane/detectors.hpp"
 #include "detectors/recipe.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/testing.hpp"

@@ -1,6 +1,6 @@
 // The warm start of section IV-F along the lap of a generated track.
 
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "experiments/methods/method.hpp"
 #include "graph_search/clc/clc_detector.hpp"

@@ -4,9 +4,9 @@
 
 #include "conelane/formulation.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/files/program_solution.hpp"
-#include "evaluation/files/solution_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
+#include "evaluation/formats/program_solution.hpp"
+#include "evaluation/formats/solution_file.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "model/lane_graph_model.hpp"
 #include "tests/fuzz/expectations.hpp"

@@ -3,9 +3,9 @@
 
 #include "conelane/bound_certificate.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/checking/certificate_verifier.hpp"
-#include "evaluation/files/certificate_file.hpp"
-#include "evaluation/files/search_certificate_file.hpp"
+#include "evaluation/formats/certificate_file.hpp"
+#include "evaluation/formats/search_certificate_file.hpp"
+#include "evaluation/proofs/certificate_verifier.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 #include "tests/support/six_cone_lane.hpp"

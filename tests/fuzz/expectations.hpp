@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 
 #include <cstdlib>
 #include <iostream>

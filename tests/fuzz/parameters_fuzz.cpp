@@ -2,7 +2,7 @@
 // cards of detectors, the record of a tuning, round trips of an echo, and the names of detectors from
 // outside.
 
-#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/methods/method.hpp"

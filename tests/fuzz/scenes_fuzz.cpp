@@ -1,7 +1,7 @@
 // Readers of scenes: a file, a stream, and the boundaries of a file's tracks. A text that is read can be
 // written and read again.
 
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 

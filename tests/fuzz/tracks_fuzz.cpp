@@ -1,8 +1,8 @@
 // The track readers: the bytes as each of the four formats. The line `---` separates the two files of an FSD
 // track.
 
-#include "evaluation/tracks/run_log.hpp"
-#include "evaluation/tracks/track_readers.hpp"
+#include "evaluation/formats/run_log.hpp"
+#include "evaluation/formats/track_readers.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 

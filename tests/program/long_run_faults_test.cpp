@@ -2,7 +2,7 @@
 // folder that cannot be written, truncated files, detectors that die. Nothing written before is lost, errors
 // name the file, and the next run gives the same as an undisturbed run.
 
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/test_paths.hpp"

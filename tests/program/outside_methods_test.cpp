@@ -1,8 +1,8 @@
 // Detectors from outside through the real program: the answers of programs and files, and that nothing a
 // program does harms the run.
 
-#include "evaluation/files/lane_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/lane_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"

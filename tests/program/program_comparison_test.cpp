@@ -1,7 +1,7 @@
 // Folders of comparisons: written, resumed, merged.
 
-#include "evaluation/files/folder_lock.hpp"
-#include "evaluation/files/lane_file.hpp"
+#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/lane_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/testing.hpp"
 

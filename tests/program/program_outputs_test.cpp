@@ -1,7 +1,7 @@
 // Outputs of the program: it tries them before the work, never overwrites its input, and keeps an old result
 // until a new one is complete.
 
-#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/formats/parameter_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"

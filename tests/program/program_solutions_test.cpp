@@ -1,6 +1,6 @@
 // Solutions and certificates that the program checks; forged ones are found.
 
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // Training, tuning and studies through the program.
 
-#include "evaluation/files/parameter_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/parameter_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/testing.hpp"
 

@@ -1,7 +1,7 @@
 // Outputs of several files: all are written, or all stay unchanged, whether the disk is full or a signal ends
 // the program. Files that the program did not write are not replaced without a request.
 
-#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/formats/atomic_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/test_paths.hpp"

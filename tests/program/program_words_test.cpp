@@ -1,7 +1,7 @@
 // Messages of the program about a wrong word of the command line or a wrong key of a file: they name the
 // word, and what would be right.
 
-#include "evaluation/files/json_node.hpp"
+#include "evaluation/formats/json_node.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/testing.hpp"
 

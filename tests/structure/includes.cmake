@@ -22,7 +22,7 @@ set(playground_depends_on model solvers graph_search detectors evaluation playgr
 set(tests_depends_on model solvers graph_search detectors evaluation experiments program tests)
 # Each folder, and each file that stands beside folders, without its ending: what stands later may include what stands before.
 set(layers_of_solvers/path_pair search_clock search_tuning path_pair_options graph bound primal frontier search path_pair_solver)
-set(layers_of_evaluation seeded_random files tracks scenes scoring outside checking)
+set(layers_of_evaluation input_error seeded_random world formats scoring proofs outside)
 set(layers_of_experiments progress training tuning methods comparison options cross_check cross_validation instances
                           studies race report benchmarks examples)
 set(layers_of_program commands main)

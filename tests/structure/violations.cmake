@@ -40,8 +40,8 @@ endforeach()
 
 # Layers: a second file to include, since one that is missing is a fault of its own.
 file(REMOVE_RECURSE ${SCRATCH})
-foreach(direction IN ITEMS "evaluation/tracks/track;evaluation/scenes/scene" "evaluation/files/text;evaluation/scenes/scene"
-                           "evaluation/seeded_random;evaluation/files/text" "experiments/tuning/tuner;experiments/studies/study"
+foreach(direction IN ITEMS "evaluation/world/track;evaluation/formats/scene" "evaluation/world/scene;evaluation/formats/text"
+                           "evaluation/seeded_random;evaluation/formats/text" "experiments/tuning/tuner;experiments/studies/study"
                            "program/commands/command;program/main"
                            "solvers/path_pair/bound/multipliers;solvers/path_pair/search/branch_and_bound"
                            "solvers/path_pair/primal/incumbent;solvers/path_pair/frontier/graph")
@@ -52,8 +52,8 @@ foreach(direction IN ITEMS "evaluation/tracks/track;evaluation/scenes/scene" "ev
     set(also ${lower}.hpp)
     expect("" includes ${upper}.cpp "#include \"${lower}.hpp\"")
 endforeach()
-set(also evaluation/files/text.hpp)
-expect("" includes evaluation/files/more.cpp "#include \"evaluation/files/text.hpp\"")
+set(also evaluation/formats/text.hpp)
+expect("" includes evaluation/formats/more.cpp "#include \"evaluation/formats/text.hpp\"")
 set(also)
 expect("experiments/new/a.cpp has no place in layers_of_experiments" includes experiments/new/a.cpp "")
 
@@ -80,7 +80,7 @@ expect("" includes solvers/detail/a.hpp "#pragma once\n#include <CbcModel.hpp>")
 expect("solvers/a.hpp includes <Cbc...>, which" includes solvers/a.hpp "#pragma once\n#include <CbcModel.hpp>")
 expect("solvers/a.hpp includes <IpT...>, which" includes solvers/a.hpp "#pragma once\n#include <IpTNLP.hpp>")
 expect("includes <boost/...>, which" includes graph_search/a.hpp "#pragma once\n#  include <boost/geometry.hpp>")
-expect("" includes evaluation/files/a.hpp "#pragma once\n#include <nlohmann/json.hpp>")
+expect("" includes evaluation/formats/a.hpp "#pragma once\n#include <nlohmann/json.hpp>")
 
 expect("" includes model/scene.cpp "#include \"model/scene.hpp\"\n#include <cmath>")
 expect("model/scene.cpp does not include model/scene.hpp first" includes model/scene.cpp

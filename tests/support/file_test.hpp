@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "tests/support/testing.hpp"
 
 #include <iterator>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "tests/support/test_paths.hpp"
 
 #include <algorithm>

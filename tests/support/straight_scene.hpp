@@ -1,7 +1,7 @@
 #pragma once
 
-#include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/score.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <cstddef>
 #include <optional>

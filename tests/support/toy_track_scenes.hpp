@@ -1,7 +1,7 @@
 #pragma once
 
-#include "evaluation/scenes/scene_file.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "tests/support/testing.hpp"
 
 #include <iterator>

@@ -1,6 +1,6 @@
 #include "conelane/drivable_lane.hpp"
-#include "evaluation/scenes/scene_generation.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "model/geometry.hpp"
 #include "tests/support/drivable_checks.hpp"
 #include "tests/support/drivable_courses.hpp"

@@ -2,8 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
-#include "evaluation/scenes/frame_file.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/frame_file.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "model/geometry.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/plan_checks.hpp"

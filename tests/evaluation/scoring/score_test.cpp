@@ -1,7 +1,7 @@
 #include "evaluation/scoring/score.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "tests/support/straight_scene.hpp"
 #include "tests/support/testing.hpp"
 

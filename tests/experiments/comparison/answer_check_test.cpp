@@ -1,8 +1,8 @@
 // Verdicts of the independent checker on the answers of RLD detectors.
 
-#include "evaluation/checking/answer_check.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/straight_scene.hpp"

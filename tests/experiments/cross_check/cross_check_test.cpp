@@ -5,8 +5,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/cross_check/case_file.hpp"
 #include "experiments/cross_check/judge.hpp"
 #include "experiments/cross_check/shrink.hpp"

@@ -3,8 +3,8 @@
 #include "experiments/race/race.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/condition.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/world/condition.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/vehicle.hpp"
 #include "tests/support/recorded_tracks.hpp"

@@ -1,8 +1,8 @@
 // Acceleration and skidpad in the variants that events may set up, and whole races with the planner on them.
 
 #include "conelane/planner.hpp"
-#include "evaluation/scenes/condition.hpp"
-#include "evaluation/tracks/track.hpp"
+#include "evaluation/world/condition.hpp"
+#include "evaluation/world/track.hpp"
 #include "experiments/race/course.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race.hpp"

@@ -2,7 +2,7 @@
 
 #include "experiments/studies/backend_measures.hpp"
 
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/studies/aslib.hpp"
 #include "experiments/studies/features.hpp"
 #include "experiments/studies/peak_memory.hpp"

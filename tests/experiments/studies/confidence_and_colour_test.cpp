@@ -3,7 +3,7 @@
 #include "experiments/studies/confidence_and_colour.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/testing.hpp"

@@ -1,7 +1,7 @@
 // The studies of overruns and of memory: their counts, and that the detectors stay within their limits.
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/studies/deadlines.hpp"
 #include "experiments/studies/memory.hpp"
 #include "model/deadline.hpp"

@@ -4,7 +4,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "tests/support/straight_scene.hpp"
 #include "tests/support/testing.hpp"
 

@@ -3,7 +3,7 @@
 #include "experiments/studies/relaxations.hpp"
 
 #include "conelane/relaxation_solvers.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/testing.hpp"
 

@@ -1,7 +1,7 @@
 // Studies: what is listed, the table they share, and the exact backends under one objective.
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/studies/anytime.hpp"
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/cone_sets.hpp"

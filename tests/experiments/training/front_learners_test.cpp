@@ -1,6 +1,6 @@
 // The derivatives by which the cost and the judge of `front` learn.
 
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
 #include "experiments/training/front_gradient.hpp"
 #include "experiments/training/front_judge_learner.hpp"
 #include "experiments/training/front_learner.hpp"

@@ -3,7 +3,7 @@
 #include "experiments/training/front_scenes.hpp"
 
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/world/generated_tracks.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane::experiments {

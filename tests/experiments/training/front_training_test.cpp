@@ -3,9 +3,9 @@
 #include "experiments/training/front_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/tracks/centre_line.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "evaluation/input_error.hpp"
+#include "evaluation/world/centre_line.hpp"
+#include "evaluation/world/generated_tracks.hpp"
 #include "experiments/training/front_checkpoint.hpp"
 #include "experiments/training/front_training_run.hpp"
 #include "graph_search/weights/shipped_weights.hpp"

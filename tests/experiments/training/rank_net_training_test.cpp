@@ -1,9 +1,9 @@
 #include "experiments/training/rank_net_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/rank_net_file.hpp"
+#include "evaluation/formats/rank_net_file.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/tracks/track_spec.hpp"
 #include "experiments/training/adam.hpp"
 #include "experiments/training/track_variant.hpp"
 #include "experiments/training/training_run.hpp"

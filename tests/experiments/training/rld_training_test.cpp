@@ -2,8 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/tracks/track_spec.hpp"
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/input_error.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"

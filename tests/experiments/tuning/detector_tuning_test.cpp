@@ -2,7 +2,7 @@
 
 #include "experiments/tuning/detector_tuning.hpp"
 
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/methods/method.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 #include "tests/support/program_fixture.hpp"

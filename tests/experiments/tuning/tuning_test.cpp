@@ -2,7 +2,7 @@
 // their held-out tracks, and a log from which a stopped run resumes.
 
 #include "conelane/rld_parameter_sets.hpp"
-#include "evaluation/files/input_error.hpp"
+#include "evaluation/input_error.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/failure_causes.hpp"

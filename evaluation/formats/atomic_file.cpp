@@ -1,0 +1,184 @@
+#include "evaluation/formats/atomic_file.hpp"
+
+#include "evaluation/input_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <ranges>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace conelane {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Prefix of temporary names; the number of the process and of the attempt follow.
+const std::string kTemporary = ".tmp";
+
+/// Open descriptors of the process: renaming over a file to which a shell has redirected them would take the
+/// file away from the other writers.
+bool is_open_descriptor(const fs::path& target) {
+    const std::string path = target.lexically_normal().string();
+    constexpr std::array<std::string_view, 2> kNames{"/dev/stdout", "/dev/stderr"};
+    constexpr std::array<std::string_view, 2> kFolders{"/dev/fd/", "/proc/self/fd/"};
+    return std::ranges::find(kNames, path) != kNames.end() ||
+           std::ranges::any_of(kFolders, [&](std::string_view folder) { return path.starts_with(folder); });
+}
+
+[[noreturn]] void fail(const fs::path& target, int error) {
+    std::string message = "cannot be written: " + std::generic_category().message(error);
+    if (error == ENOENT && target.has_parent_path())
+        message += "; make the folder '" + target.parent_path().string() + "' first";
+    throw InputError(target, 0, "", message);
+}
+
+/// A name beside `place` that no other process uses.
+fs::path temporary_name(const fs::path& place, int attempt) {
+    fs::path name = place;
+    name += kTemporary + std::to_string(::getpid()) + "_" + std::to_string(attempt);
+    return name;
+}
+
+/// Creates an empty file beside `place` under a name that no other file has.
+fs::path create_temporary(const fs::path& place, const fs::path& target) {
+    for (int attempt = 0;; ++attempt) {
+        fs::path name = temporary_name(place, attempt);
+        const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0) {
+            ::close(descriptor);
+            return name;
+        }
+        if (errno != EEXIST) fail(target, errno);
+    }
+}
+
+/// Keeps the file at `place` under a second name; no name if there is no file, or if the file system has no
+/// hard links.
+fs::path kept_aside(const fs::path& place) {
+    for (int attempt = 0;; ++attempt) {
+        fs::path name = temporary_name(place, attempt);
+        if (::link(place.c_str(), name.c_str()) == 0) return name;
+        if (errno != EEXIST) return {};
+    }
+}
+
+/// A file that already has its name, and what it replaced.
+struct Renamed {
+    fs::path place;
+    fs::path aside;
+    bool is_new;
+};
+
+void undo(const Renamed& renamed) {
+    std::error_code ignored;
+    if (!renamed.aside.empty()) {
+        fs::rename(renamed.aside, renamed.place, ignored);
+    } else if (renamed.is_new) {
+        fs::remove(renamed.place, ignored);
+    }
+}
+
+}  // namespace
+
+void remove_abandoned_files(const fs::path& folder) {
+    std::vector<fs::path> abandoned;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        const std::size_t end = name.rfind(kTemporary);
+        if (end == std::string::npos || !entry.is_regular_file()) continue;
+        const std::string_view numbers = std::string_view(name).substr(end + kTemporary.size());
+        if (numbers.find('_') != std::string_view::npos &&
+            numbers.find_first_not_of("0123456789_") == std::string_view::npos) {
+            abandoned.push_back(entry.path());
+        }
+    }
+    for (const fs::path& file : abandoned) fs::remove(file);
+}
+
+AtomicFile::AtomicFile(const fs::path& target) : target_(target), place_(target) {
+    std::error_code error;
+    const fs::file_status status = fs::status(target, error);
+    if (fs::is_directory(status)) throw InputError(target, 0, "", "is a folder, not a file");
+    if (is_open_descriptor(target) || (fs::exists(status) && !fs::is_regular_file(status))) {
+        errno = 0;
+        stream_.open(target, std::ios::binary | std::ios::app);
+        if (!stream_) fail(target, errno);
+        return;
+    }
+    if (target.filename().empty()) fail(target, EISDIR);
+    if (fs::exists(status)) place_ = fs::canonical(target);
+    {
+        // Opened before it may be cleared: opening a file that is gone would create it again.
+        const auto held = hold_interruption();
+        temporary_ = create_temporary(place_, target);
+        clearing_.emplace([name = temporary_] { ::unlink(name.c_str()); });
+        if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), error);
+        stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+    }
+    if (!stream_) {
+        const int reason = errno;
+        fs::remove(temporary_, error);
+        fail(target, reason);
+    }
+}
+
+AtomicFile::~AtomicFile() {
+    if (temporary_.empty()) return;
+    stream_.close();
+    std::error_code ignored;
+    fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::finish() {
+    if (is_open_) stream_.close();
+    is_open_ = false;
+    stream_.require_written(target_);
+}
+
+void AtomicFile::commit() {
+    AtomicFile* const only = this;
+    commit_together({&only, 1});
+}
+
+void commit_together(std::span<AtomicFile* const> files) {
+    for (AtomicFile* file : files) file->finish();
+    const auto held = hold_interruption();
+    std::vector<Renamed> done;
+    std::error_code ignored;
+    for (AtomicFile* file : files) {
+        if (file->temporary_.empty()) continue;
+        const bool is_new = !fs::exists(fs::symlink_status(file->place_, ignored));
+        done.push_back(
+            {file->place_, is_new || files.size() == 1 ? fs::path{} : kept_aside(file->place_), is_new});
+        std::error_code error;
+        fs::rename(file->temporary_, file->place_, error);
+        if (!error) continue;
+        if (!done.back().aside.empty()) fs::remove(done.back().aside, ignored);
+        done.pop_back();
+        for (const Renamed& renamed : done | std::views::reverse) undo(renamed);
+        fail(file->target_, error.value());
+    }
+    for (const Renamed& renamed : done) {
+        if (!renamed.aside.empty()) fs::remove(renamed.aside, ignored);
+    }
+    for (AtomicFile* file : files) {
+        file->temporary_.clear();
+        file->clearing_.reset();
+    }
+}
+
+void require_writable(const fs::path& target) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(target, ignored);
+    if (fs::is_other(status)) return;
+    const AtomicFile probe(target);
+}
+
+}  // namespace conelane

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "evaluation/formats/interruption.hpp"
+#include "evaluation/formats/output_stream.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <ostream>
+#include <span>
+
+namespace conelane {
+
+/// A file that appears under its name complete or not at all: it is written under a temporary name in the
+/// same folder and renamed by `commit`. If it is destroyed without `commit`, or a signal ends the program,
+/// the target stays unchanged. A target that is not a regular file, such as a pipe or /dev/stdout, is written
+/// directly.
+class AtomicFile {
+  public:
+    /// Throws InputError naming the target if it cannot be written.
+    explicit AtomicFile(const std::filesystem::path& target);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    [[nodiscard]] std::ostream& stream() { return stream_; }
+
+    /// Closes the file, which is then complete under its temporary name. Throws InputError naming the target
+    /// if it could not be written completely, for example on a full disk.
+    void finish();
+    /// Finishes the file and gives it its name. Throws InputError naming the target if that fails.
+    void commit();
+    /// Finishes all files, and then gives them their names, in their order. Signals are held back meanwhile.
+    /// If one rename fails, the earlier targets get their old content back.
+    friend void commit_together(std::span<AtomicFile* const> files);
+
+  private:
+    std::filesystem::path target_;     ///< as the caller spelled it, for messages
+    std::filesystem::path place_;      ///< where the file goes: the target with symbolic links followed
+    std::filesystem::path temporary_;  ///< empty if the target is written directly or is complete
+    std::optional<ClearOnInterruption> clearing_;  ///< of the temporary file
+    bool is_open_ = true;
+    OutputStream stream_;
+};
+
+void commit_together(std::span<AtomicFile* const> files);
+
+/// Removes temporary files that a killed program left in a folder. Precondition: no other program writes
+/// there.
+void remove_abandoned_files(const std::filesystem::path& folder);
+
+/// Throws InputError as writing the target would, without changing it. Pipes and devices are not opened:
+/// opening one may end its reader.
+void require_writable(const std::filesystem::path& target);
+
+}  // namespace conelane

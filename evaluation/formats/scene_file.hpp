@@ -1,0 +1,53 @@
+#pragma once
+
+#include "evaluation/world/annotated_scene.hpp"
+#include "evaluation/world/track_boundaries.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <istream>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// Scenes of a `*.scenes.jsonl` file, in its order. A scene without an id gets its line number, from 1.
+/// Throws InputError naming file, line and key: for invalid JSON, a scene without cones, a cone id, scene id
+/// or ground-truth id that occurs twice, a ground-truth id without a cone, or a file without scenes.
+[[nodiscard]] std::vector<AnnotatedScene> read_scenes(const std::filesystem::path& file);
+
+/// A line of a stream of scenes.
+struct SceneLine {
+    std::size_t number = 0;               ///< from 1, blank lines counted
+    std::optional<AnnotatedScene> scene;  ///< absent if the line is not a scene
+    bool reset = false;                   ///< {"reset": true}: another lap begins
+    std::string fault;                    ///< what is wrong with any other line
+};
+
+/// Calls `use` with each line of a stream that is not blank, before the next one is read. An invalid line is
+/// passed on with its fault; scenes may have equal ids.
+void for_each_scene_line(std::istream& stream, const std::function<void(const SceneLine&)>& use);
+
+/// A scene as its line, without newline, with only what a detector may know. Precondition: the scene is
+/// valid.
+[[nodiscard]] std::string scene_line(const Scene& scene);
+
+/// Throws InvalidInput if a number is not finite, InputError if the file cannot be written; an old file then
+/// stays unchanged.
+void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes);
+
+/// The companion of a scenes file: NAME.tracks.json beside NAME.scenes.jsonl. For other names, the last
+/// extension is replaced.
+[[nodiscard]] std::filesystem::path track_boundaries_path(const std::filesystem::path& scenes);
+
+/// Throws InputError naming file and key, or the line that is not JSON. Each boundary has at least one point,
+/// except in a track with a driven path.
+[[nodiscard]] TrackBoundariesByName read_track_boundaries(const std::filesystem::path& file);
+
+/// Throws like write_scenes.
+void write_track_boundaries(const std::filesystem::path& file, const TrackBoundariesByName& tracks);
+
+}  // namespace conelane

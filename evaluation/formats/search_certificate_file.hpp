@@ -1,0 +1,63 @@
+#pragma once
+
+#include "conelane/scene.hpp"
+#include "evaluation/formats/parameter_tag.hpp"
+#include "model/search_certificate.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+
+/// A line of a file of whole-search certificates: a SearchCertificate with cones by id. Cones and cliques
+/// that are not listed have the multiplier 0.
+struct SearchCertificateRecord {
+    using Units = SearchCertificate::Units;
+    using EdgeById = std::pair<ConeId, ConeId>;
+    struct Stage {
+        std::vector<std::pair<ConeId, Units>> cones;
+        std::vector<std::pair<std::size_t, Units>> cliques;
+        Units heading = 0;
+    };
+    struct Part {
+        std::optional<ConeId> far_start;
+        std::vector<std::vector<EdgeById>> cliques;
+        std::vector<Stage> stages;
+    };
+    std::string scene;
+    std::optional<std::vector<EdgeById>> edges;  ///< of the lane graph
+    std::optional<double> objective;
+    /// Infinite if it is claimed that no lane graph exists, minus infinity if nothing is claimed.
+    double bound = 0.0;
+    std::vector<Part> parts;
+    std::optional<std::size_t> nearest;  ///< size of the cone set; absent: all cones, or unknown
+    ParameterTag parameters = {};        ///< parameters of the costs
+    std::size_t line = 0;                ///< line in the file that was read; 0 without a file
+};
+
+[[nodiscard]] SearchCertificateRecord to_search_record(const Scene& scene,
+                                                       const SearchCertificate& certificate);
+
+/// Nothing if the record names a cone that is not in the scene; `missing` is then its id.
+[[nodiscard]] std::optional<SearchCertificate> from_search_record(const Scene& scene,
+                                                                  const SearchCertificateRecord& record,
+                                                                  ConeId& missing);
+
+/// Whether the first record is one of a whole search; false without a record or a file.
+[[nodiscard]] bool holds_search_certificates(const std::filesystem::path& file);
+
+/// Records in the order of the file. Throws InputError naming file, line and key.
+[[nodiscard]] std::vector<SearchCertificateRecord> read_search_certificates(
+    const std::filesystem::path& file);
+
+/// Throws InputError if the file cannot be written. An old file then stays unchanged.
+void write_search_certificates(const std::filesystem::path& file,
+                               std::span<const SearchCertificateRecord> records);
+
+}  // namespace conelane

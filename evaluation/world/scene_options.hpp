@@ -1,0 +1,52 @@
+#pragma once
+
+#include "evaluation/world/condition.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// Which scenes a track gives. The values of a list are distinct.
+struct SceneOptions {
+    std::vector<double> false_positive_rates;  ///< false positives / all points of the scene, in [0, 0.99]
+    std::vector<double> ranges_m;              ///< radius of the visible half disc, in [0.1, 1000]
+    double every_m = 1.1;                      ///< travel between poses, in [0.01, 1000]
+    std::optional<std::size_t> nearest;        ///< keep this many cones ahead, at least one; all if absent
+    /// Names of conditions, in the order of the laps. If empty, there is one condition without a name.
+    std::vector<std::string> conditions;
+    // These values replace those of every condition; see Condition.
+    std::optional<double> noise_sigma_m;
+    std::optional<double> noise_by_range;  ///< in [0, 1]
+    std::optional<double> pose_noise_lateral_m;
+    std::optional<double> pose_noise_yaw_rad;
+    std::optional<double> miss_rate;  ///< in [0, 1)
+    std::optional<bool> persistent;
+    bool with_color = false;  ///< false: every cone is of unknown color
+    /// Share of the map's blue and yellow cones seen in the other color, in [0, 1]; only with color.
+    double color_error_rate = 0.0;
+    /// Share of the map's cones whose color is not seen, in [0, 1]; only with color. Of the other blue or
+    /// yellow cones color_error_rate is wrong. False positives are blue, yellow or of unknown color, a third
+    /// each, whatever the two rates are.
+    double color_unknown_rate = 0.0;
+    /// Without it every confidence is 1. A cone of a boundary draws its confidence from Beta(5, 2) (mean
+    /// 0.71), any other point from Beta(2, 4) (mean 0.33): the cone's is the higher one in 93 % of such
+    /// pairs.
+    bool with_confidence = false;
+    std::uint64_t seed = 0;  ///< base seed
+    unsigned threads = 1;    ///< largest number; at most the number of processors is used
+};
+
+/// Throws InvalidInput naming the option where a value is out of its range.
+void validate(const SceneOptions& options);
+
+/// The conditions that the options ask for, at least one. Where an option changes a named one, its name says
+/// so: "car+miss_0", "car+fresh". Throws InvalidInput if a condition is unknown or named twice.
+[[nodiscard]] std::vector<Condition> conditions_of(const SceneOptions& options);
+/// Their names, for records of a run; empty if none is named.
+[[nodiscard]] std::vector<std::string> condition_names(const SceneOptions& options);
+
+}  // namespace conelane
