@@ -9,7 +9,9 @@
 #include "evaluation/formats/program_files.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
+#include "experiments/instances/files_together.hpp"
 #include "experiments/instances/instance_features.hpp"
+#include "experiments/options/cone_set_sizes.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -140,24 +142,6 @@ constexpr const char* kList = "conelane.test";
 constexpr const char* kSolutions = "conelane.solu";
 constexpr const char* kIndex = "index.csv";
 constexpr std::string_view kProgramEnding = ".mps.gz";
-
-/// Files that get their names together, once all of them are complete. Until then at most one is open.
-class Files {
-  public:
-    void add(const std::filesystem::path& file, const std::string& content) {
-        AtomicFile& output = *files_.emplace_back(std::make_unique<AtomicFile>(file));
-        output.stream() << content;
-        output.finish();
-    }
-    void commit() const {
-        std::vector<AtomicFile*> all;
-        for (const auto& file : files_) all.push_back(file.get());
-        commit_together(all);
-    }
-
-  private:
-    std::vector<std::unique_ptr<AtomicFile>> files_;
-};
 
 /// The programs of the library in a folder, by the names in its list. Throws InputError if the folder has a
 /// program that the list does not name: it may belong to another library.
@@ -294,9 +278,8 @@ std::vector<InstanceScene> instance_scenes(const InstanceOptions& options) {
         for (const AnnotatedScene& scene : scenes) {
             if (!nearest || *nearest < scene.scene.cones.size()) of_size.push_back(&scene);
         }
-        const std::size_t count = std::min(of_size.size(), options.limit.value_or(of_size.size()));
-        for (std::size_t i = 0; i < count; ++i)
-            sets.emplace_back(of_size[i * of_size.size() / count], nearest);
+        for (const AnnotatedScene* const scene : spread(of_size, options.limit))
+            sets.emplace_back(scene, nearest);
     }
     std::ranges::stable_sort(sets, {}, [](const auto& set) { return set.first; });
     std::vector<InstanceScene> all;
@@ -328,7 +311,7 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
     remove_abandoned_files(folder);
     const std::vector<std::filesystem::path> earlier = listed_programs(folder);
     InstanceCounts counts;
-    Files files;
+    FilesTogether files;
     std::set<std::filesystem::path> written;
     std::string list;
     std::string solutions;

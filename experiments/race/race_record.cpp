@@ -94,15 +94,13 @@ std::string race_table(std::span<const Heat> heats, int laps) {
             if (Row(heat.detector, heat.false_positive_rate) == row) sums.add(heat.result);
         }
         const auto count = static_cast<double>(sums.races);
-        table.add(
-            {row.first, fmt::format("{}", row.second), std::to_string(sums.races),
-             percent(share(sums.finished, sums.races), 1),
-             percent(share(sums.laps, sums.races * static_cast<std::size_t>(laps)), 1),
-             fixed(sums.departures_m.median(), 0), fixed(sums.hit / count, 2),
-             fixed(sums.errors_m.median(), 2), percent(share(sums.without, sums.frames), 2),
-             sums.time_s > 0.0 ? percent(sums.old_s / sums.time_s, 2) : "-",
-             percent(sums.unsteady.mean(), 1),
-             percent(share(sums.wrong, sums.frames), 2)});
+        table.add({row.first, fmt::format("{}", row.second), std::to_string(sums.races),
+                   percent(share(sums.finished, sums.races), 1),
+                   percent(share(sums.laps, sums.races * static_cast<std::size_t>(laps)), 1),
+                   fixed(sums.departures_m.median(), 0), fixed(sums.hit / count, 2),
+                   fixed(sums.errors_m.median(), 2), percent(share(sums.without, sums.frames), 2),
+                   sums.time_s > 0.0 ? percent(sums.old_s / sums.time_s, 2) : "-",
+                   percent(sums.unsteady.mean(), 1), percent(share(sums.wrong, sums.frames), 2)});
     }
     std::string text = table.text();
     TextTable lost(
@@ -128,7 +126,8 @@ std::string race_table(std::span<const Heat> heats, int laps) {
         std::string words;
         for (const std::string& word : how) words += (words.empty() ? "" : ", ") + word;
         lost.add({place.first, place.second.first, fmt::format("{}", place.second.second),
-                  fmt::format("{} of {}", driven_m.values().size(), races), fixed(driven_m.median(), 0), words});
+                  fmt::format("{} of {}", driven_m.values().size(), races), fixed(driven_m.median(), 0),
+                  words});
     }
     if (any) text += "\n" + lost.text();
     return text;

@@ -1,3 +1,4 @@
+#include "experiments/options/cone_set_sizes.hpp"
 #include "experiments/studies/solve_study.hpp"
 #include "experiments/studies/study.hpp"
 
@@ -52,7 +53,7 @@ class AnytimeStudy : public SolveStudy {
   protected:
     StudyResult aggregate(const SceneSet& set, SolveOptions solves) override {
         require_ascending("--limits", limits_ms_);
-        const std::vector<AnnotatedScene> scenes = spread_scenes(set.scenes, solves.limit);
+        const std::vector<AnnotatedScene> scenes = spread(set.scenes, solves.limit);
         solves.sizes = {kAllVisible};
         solves.limit.reset();
         std::map<const AnnotatedScene*, std::vector<AnytimeRow>> of_scene;
@@ -88,13 +89,14 @@ class AnytimeStudy : public SolveStudy {
   private:
     static StudyResult result_of(const std::vector<AnytimeRow>& rows) {
         using Row = AnytimeRow;
-        const RowFields<Row> fields = with_scene<Row>({{"cones", &Row::cones},
-                                                       {"limit_ms", &Row::limit_ms},
-                                                       {"proven", &Row::is_proven},
-                                                       {"objective", &Row::objective},
-                                                       {"bound", [](const Row& row) { return bound_value(row.bound); }},
-                                                       {"best_known", &Row::best_known},
-                                                       {"gap", &Row::gap}});
+        const RowFields<Row> fields =
+            with_scene<Row>({{"cones", &Row::cones},
+                             {"limit_ms", &Row::limit_ms},
+                             {"proven", &Row::is_proven},
+                             {"objective", &Row::objective},
+                             {"bound", [](const Row& row) { return bound_value(row.bound); }},
+                             {"best_known", &Row::best_known},
+                             {"gap", &Row::gap}});
         const RowFields<RowGroup<Row>> of_limits{
             {"", first_of(&Row::limit_ms), Shown::number("limit ms")},
             {"", &RowGroup<Row>::size, Shown::number("scenes")},
@@ -106,7 +108,8 @@ class AnytimeStudy : public SolveStudy {
             {"", quantile_of(&Row::open_gap, 0.9), Shown::percent("p90 gap %", 1)}};
         StudyResult result;
         result.add_rows(rows, fields);
-        result.table = row_table(groups_of<Row>(rows, [](const Row& row) { return row.limit_ms; }), of_limits);
+        result.table =
+            row_table(groups_of<Row>(rows, [](const Row& row) { return row.limit_ms; }), of_limits);
         return result;
     }
 

@@ -1,14 +1,13 @@
 #include "experiments/studies/aslib.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "experiments/instances/files_together.hpp"
 #include "experiments/instances/instance_features.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <set>
 #include <sstream>
 #include <system_error>
@@ -136,21 +135,14 @@ void write_aslib_scenario(const std::filesystem::path& folder, std::span<const S
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw InputError(folder, 0, "", "cannot be made: " + failure.message());
-    std::vector<std::unique_ptr<AtomicFile>> files;
-    const auto add = [&](const char* name, const std::string& text) {
-        files.push_back(std::make_unique<AtomicFile>(folder / name));
-        files.back()->stream() << text;
-        files.back()->finish();
-    };
-    add("description.txt", description(algorithms, options));
-    add("algorithm_runs.arff", runs_text);
-    add("feature_values.arff", values.str());
-    add("feature_runstatus.arff", status.str());
-    add("feature_costs.arff", costs.str());
-    add("cv.arff", cv.str());
-    std::vector<AtomicFile*> all;
-    for (const auto& file : files) all.push_back(file.get());
-    commit_together(all);
+    FilesTogether files;
+    files.add(folder / "description.txt", description(algorithms, options));
+    files.add(folder / "algorithm_runs.arff", runs_text);
+    files.add(folder / "feature_values.arff", values.str());
+    files.add(folder / "feature_runstatus.arff", status.str());
+    files.add(folder / "feature_costs.arff", costs.str());
+    files.add(folder / "cv.arff", cv.str());
+    files.commit();
 }
 
 }  // namespace conelane::experiments

@@ -15,6 +15,63 @@
 namespace conelane::experiments {
 namespace {
 
+/// The rows that a figure is of.
+struct MeasuredGroup {
+    std::size_t size = 0;
+    std::string condition = {};  ///< empty: all scenes
+};
+
+struct BackendSummary : MeasuredGroup {
+    std::string backend;
+    std::size_t scenes = 0, runs = 0, solved = 0;
+    std::size_t errors = 0, refuted = 0;  ///< of all runs of this backend
+    double geometric_ms = 0.0, par1_ms = 0.0, par2_ms = 0.0, par10_ms = 0.0, median_ms = 0.0;
+    std::size_t common = 0;                                      ///< runs that every backend solved
+    std::optional<double> common_geometric_ms;                   ///< over these
+    std::optional<double> median_engine_ms;                      ///< in runs that report it
+    std::optional<double> variability, spread;                   ///< medians over scenes
+    std::size_t integrals = 0;                                   ///< scenes with steps and a known lane graph
+    std::optional<double> primal_integral_ms, dual_integral_ms;  ///< means over these
+    std::vector<double> profile;                                 ///< at profile_ratios()
+    std::size_t won = 0;                                         ///< runs that it solves first
+    std::optional<std::size_t> peak_bytes;                       ///< of its block
+};
+
+/// Wilcoxon's test on two backends: geometric means of a scene's times, failures at the limit.
+struct BackendPair : MeasuredGroup {
+    std::string first, second;
+    std::size_t scenes = 0;  ///< whose times differ
+    double ratio = 1.0;      ///< geometric mean of first / second
+    double p_value = 1.0;
+    double corrected_p_value = 1.0;  ///< Holm, over the pairs of this size and condition
+};
+
+struct BackendSelection : MeasuredGroup {
+    std::string single_best;
+    double single_par10_ms = 0.0, virtual_par10_ms = 0.0;
+};
+
+/// Gaps after some time, over all scenes with steps and a known lane graph.
+struct BackendGap : MeasuredGroup {
+    std::string backend;
+    double time_ms = 0.0, mean_primal_gap = 0.0, mean_dual_gap = 0.0;
+};
+
+struct BackendMeasures {
+    std::vector<BackendSummary> summaries;  ///< by size, condition and backend
+    std::vector<BackendPair> pairs;
+    std::vector<BackendSelection> selections;
+    std::vector<BackendGap> gaps;
+};
+
+/// Multiples of the fastest time at which profiles are evaluated: 1 to 1000, 25 a decade.
+std::vector<double> profile_ratios() {
+    constexpr int kSteps = 75;
+    std::vector<double> ratios;
+    for (int k = 0; k <= kSteps; ++k) ratios.push_back(std::pow(10.0, 3.0 * k / kSteps));
+    return ratios;
+}
+
 constexpr double kPar1 = 1.0;
 constexpr double kPar2 = 2.0;
 constexpr double kPar10 = 10.0;
@@ -102,32 +159,30 @@ std::map<const AnnotatedScene*, std::vector<double>> times_by_scene(
 void add_variability(BackendSummary& summary, const std::map<Run, const SolveRow*>& rows, double limit_ms) {
     std::vector<Run> runs;
     for (const auto& [run, row] : rows) runs.push_back(run);
-    std::vector<double> coefficients, spreads;
+    Sample coefficients, spreads;
     for (const auto& [scene, times] : times_by_scene(rows, runs, limit_ms)) {
         if (times.size() < 2) continue;
         const Variability one = variability_of(times);
-        coefficients.push_back(one.coefficient);
-        spreads.push_back(one.ratio);
+        coefficients.add(one.coefficient);
+        spreads.add(one.ratio);
     }
-    if (coefficients.empty()) return;
-    summary.variability = median(coefficients);
-    summary.spread = median(spreads);
+    summary.variability = coefficients.median();
+    summary.spread = spreads.median();
 }
 
 void add_integrals(BackendSummary& summary, const Group& group, const std::map<Run, const SolveRow*>& rows,
                    double limit_ms) {
-    std::vector<double> primal, dual;
+    Sample primal, dual;
     for (const auto& [run, row] : rows) {
         const auto best = group.known_best(run.first);
         if (row->steps.empty() || !best || row->refuted) continue;
         const GapIntegrals integrals = gap_integrals(row->steps, *best, limit_ms);
-        primal.push_back(integrals.primal_ms);
-        dual.push_back(integrals.dual_ms);
+        primal.add(integrals.primal_ms);
+        dual.add(integrals.dual_ms);
     }
-    summary.integrals = primal.size();
-    if (primal.empty()) return;
-    summary.primal_integral_ms = mean(primal);
-    summary.dual_integral_ms = mean(dual);
+    summary.integrals = primal.values().size();
+    summary.primal_integral_ms = primal.mean();
+    summary.dual_integral_ms = dual.mean();
 }
 
 /// Runs of every backend, in one order.
@@ -155,11 +210,11 @@ void add_summaries(const Group& group, std::span<const Run> common, double limit
         summary.backend = group.backends[b];
         summary.scenes = scenes.size();
         summary.runs = common.size();
-        std::vector<double> engine_ms;
+        Sample engine_ms;
         for (const Run& run : common) {
             const SolveRow& row = *group.rows[b].at(run);
             summary.solved += is_solved(row, limit_ms) ? 1 : 0;
-            if (row.engine_ms) engine_ms.push_back(*row.engine_ms);
+            engine_ms.add(row.engine_ms);
         }
         for (const auto& [run, row] : group.rows[b]) {
             summary.refuted += row->refuted ? 1 : 0;
@@ -177,7 +232,7 @@ void add_summaries(const Group& group, std::span<const Run> common, double limit
             for (const std::size_t run : by_all) of_common.push_back(runs[b][run].time_ms);
             summary.common_geometric_ms = shifted_geometric_mean(of_common, kGeometricMeanShift_ms);
         }
-        if (!engine_ms.empty()) summary.median_engine_ms = median(engine_ms);
+        summary.median_engine_ms = engine_ms.median();
         summary.profile = profiles[b];
         summary.won = best.won[b];
         add_variability(summary, group.rows[b], limit_ms);
@@ -294,16 +349,15 @@ RowFields<BackendPair> pair_fields() {
         return [p](const Row& row) { return fmt::format("{:.2g}", row.*p); };
     };
     return fields_of<Row>(
-        "pair",
-        {{"first", &Row::first},
-         {"second", &Row::second},
-         {"", [](const Row& row) { return row.first + " : " + row.second; }, Shown::text("pair")},
-         {"scenes", &Row::scenes},
-         {"ratio", &Row::ratio, Shown::fixed("time ratio", 2)},
-         {"p_value", &Row::p_value},
-         {"", short_p(&Row::p_value), Shown::number("p")},
-         {"corrected_p_value", &Row::corrected_p_value},
-         {"", short_p(&Row::corrected_p_value), Shown::number("p (Holm)")}});
+        "pair", {{"first", &Row::first},
+                 {"second", &Row::second},
+                 {"", [](const Row& row) { return row.first + " : " + row.second; }, Shown::text("pair")},
+                 {"scenes", &Row::scenes},
+                 {"ratio", &Row::ratio, Shown::fixed("time ratio", 2)},
+                 {"p_value", &Row::p_value},
+                 {"", short_p(&Row::p_value), Shown::number("p")},
+                 {"corrected_p_value", &Row::corrected_p_value},
+                 {"", short_p(&Row::corrected_p_value), Shown::number("p (Holm)")}});
 }
 
 RowFields<BackendSelection> selection_fields() {
@@ -323,18 +377,6 @@ RowFields<BackendGap> gap_fields() {
                                   {"mean_dual_gap", &Row::mean_dual_gap}});
 }
 
-}  // namespace
-
-std::span<const double> profile_ratios() {
-    static const std::vector<double> kRatios = [] {
-        constexpr int kSteps = 75;
-        std::vector<double> ratios;
-        for (int k = 0; k <= kSteps; ++k) ratios.push_back(std::pow(10.0, 3.0 * k / kSteps));
-        return ratios;
-    }();
-    return kRatios;
-}
-
 BackendMeasures measures_of(const SolveResults& results, double time_limit_ms) {
     BackendMeasures measures;
     for (const Group& group : groups_of_rows(results.rows)) {
@@ -343,8 +385,8 @@ BackendMeasures measures_of(const SolveResults& results, double time_limit_ms) {
         add_summaries(group, common, time_limit_ms, measures.summaries);
         add_pairs(group, common, time_limit_ms, measures.pairs);
         const BestSolvers best = best_solvers(runs_by_backend(group, common, time_limit_ms), time_limit_ms);
-        measures.selections.push_back({group, group.backends[best.single_best],
-                                       best.single_par10_ms, best.virtual_par10_ms});
+        measures.selections.push_back(
+            {group, group.backends[best.single_best], best.single_par10_ms, best.virtual_par10_ms});
         if (group.condition.empty()) add_gaps(group, time_limit_ms, measures.gaps);
     }
     for (BackendSummary& summary : measures.summaries) {
@@ -356,17 +398,17 @@ BackendMeasures measures_of(const SolveResults& results, double time_limit_ms) {
     return measures;
 }
 
-std::string BackendMeasures::table() const {
-    return row_table(summaries, summary_fields()) + '\n' +
-           (pairs.empty() ? "" : row_table(pairs, pair_fields()) + '\n') +
-           row_table(selections, selection_fields());
-}
+}  // namespace
 
-void BackendMeasures::add_rows_to(StudyResult& result) const {
-    result.add_rows(summaries, summary_fields());
-    result.add_rows(pairs, pair_fields());
-    result.add_rows(selections, selection_fields());
-    result.add_rows(gaps, gap_fields());
+void add_measures(StudyResult& result, const SolveResults& results, double time_limit_ms) {
+    const BackendMeasures measures = measures_of(results, time_limit_ms);
+    result.table += row_table(measures.summaries, summary_fields()) + '\n';
+    if (!measures.pairs.empty()) result.table += row_table(measures.pairs, pair_fields()) + '\n';
+    result.table += row_table(measures.selections, selection_fields());
+    result.add_rows(measures.summaries, summary_fields());
+    result.add_rows(measures.pairs, pair_fields());
+    result.add_rows(measures.selections, selection_fields());
+    result.add_rows(measures.gaps, gap_fields());
 }
 
 }  // namespace conelane::experiments

@@ -20,9 +20,10 @@ namespace conelane::experiments {
 namespace {
 
 Json steps_json(const SolveRow& row) {
-    const RowFields<Knowledge> fields{{"time_ms", &Knowledge::time_ms},
-                                      {"objective", &Knowledge::objective},
-                                      {"bound", [](const Knowledge& step) { return bound_value(step.bound); }}};
+    const RowFields<Knowledge> fields{
+        {"time_ms", &Knowledge::time_ms},
+        {"objective", &Knowledge::objective},
+        {"bound", [](const Knowledge& step) { return bound_value(step.bound); }}};
     Json steps;
     for (const Knowledge& step : row.steps) steps.push_back(row_json(step, fields));
     return steps;
@@ -33,7 +34,8 @@ template <typename Get>
 auto if_any(const Get& get) {
     return [get](const SolveRow& row) {
         const Json value = std::invoke(get, row);
-        return value.empty() || value == 0U || value == false || value == "" ? std::nullopt : FieldValue(value);
+        return value.empty() || value == 0U || value == false || value == "" ? std::nullopt
+                                                                             : FieldValue(value);
     };
 }
 
@@ -81,14 +83,16 @@ std::string backend_table(std::span<const SolveRow> rows) {
         {"", status(&Row::is_optimal), Shown::number("optimal")},
         {"", status(&Row::is_infeasible), Shown::number("infeasible")},
         {"", status(std::not_fn(&Row::is_proven)), Shown::number("unproven")},
-        {"", count_of([=](const Row& row) { return is_error(row) && !row.refuted; }), Shown::number("errors")},
+        {"", count_of([=](const Row& row) { return is_error(row) && !row.refuted; }),
+         Shown::number("errors")},
         {"", count_of(&Row::refuted), Shown::number("refuted")},
         {"", mean_of(of_original(&Row::nodes)), Shown::fixed("nodes", 1)},
         {"", median_of(latency_ms), Shown::fixed("median ms", 2)},
         {"", quantile_of(latency_ms, 0.95), Shown::fixed("p95 ms", 2)},
         {"", quantile_of(latency_ms, 1.0), Shown::fixed("max ms", 2)}};
     return row_table(
-        groups_of<Row>(rows, [](const Row& row) { return std::pair(row.size, row.backend.label()); }), fields);
+        groups_of<Row>(rows, [](const Row& row) { return std::pair(row.size, row.backend.label()); }),
+        fields);
 }
 
 const RowFields<SolveBlock> kBlockFields{{"row", [](const SolveBlock&) { return "block"; }},
@@ -148,13 +152,12 @@ class BackendsStudy : public SolveStudy {
         solves.backends = backends_asked_for();
         SolveResults results = solve_scenes(set.scenes, solves);
         mark_refuted_claims(results.rows);
-        const BackendMeasures measures = measures_of(results, solves.time_limit_ms);
         if (!aslib_.empty()) write_aslib_scenario(aslib_, results.rows, solves);
-        StudyResult result{backend_table(results.rows) + left_out(solves) + '\n' + measures.table() + '\n' +
-                           machine(results)};
+        StudyResult result{backend_table(results.rows) + left_out(solves) + '\n'};
         result.add_rows(results.rows, fields_of_file());
         result.add_rows(results.blocks, kBlockFields);
-        measures.add_rows_to(result);
+        add_measures(result, results, solves.time_limit_ms);
+        result.table += '\n' + machine(results);
         result.errors = errors_among(results.rows);
         return result;
     }

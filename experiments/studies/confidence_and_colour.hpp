@@ -54,6 +54,8 @@ struct ConfidenceColorRow {
     double accurate = 0.0;        ///< share of them (RLD paper, IV-B)
     double success = 0.0;         ///< share of all scenes (CLC paper, Table I)
     std::vector<double> weights;  ///< w_b with confidences, w_color with colors, by fold; empty with neither
+
+    bool operator==(const ConfidenceColorRow&) const = default;
 };
 
 /// Rows by knowledge: geometry only, confidences, colors in the order of their errors; then by rate. Throws

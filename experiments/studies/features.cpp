@@ -35,12 +35,13 @@ RowFields<FeatureRow> fields_of_file() {
 class FeaturesStudy : public SolveStudy {
   public:
     FeaturesStudy()
-        : SolveStudy({"features", "what do instances look like, and what does it cost to know?",
-                      "Features of the problem (cones, candidate edges, conflicts) and of the tight program's "
-                      "linear relaxation by Clp (size, fractional edges, degeneracy), each group timed on its "
-                      "own, one thread. The gap of the relaxation needs the optimum, by path-pair, so it is "
-                      "not a feature."},
-                     {.backends = {{"path-pair"}}, .sizes = {12, 20, 30}, .time_limit_ms = 10'000.0}) {}
+        : SolveStudy(
+              {"features", "what do instances look like, and what does it cost to know?",
+               "Features of the problem (cones, candidate edges, conflicts) and of the tight program's "
+               "linear relaxation by Clp (size, fractional edges, degeneracy), each group timed on its "
+               "own, one thread. The gap of the relaxation needs the optimum, by path-pair, so it is "
+               "not a feature."},
+              {.backends = {{"path-pair"}}, .sizes = {12, 20, 30}, .time_limit_ms = 10'000.0}) {}
 
   protected:
     StudyResult aggregate(const SceneSet& set, SolveOptions solves) override {

@@ -1,3 +1,4 @@
+#include "experiments/options/cone_set_sizes.hpp"
 #include "experiments/studies/solve_study.hpp"
 #include "experiments/studies/study.hpp"
 
@@ -38,16 +39,18 @@ std::string table_by(Shown title, const std::vector<GrowthRow>& rows, const KeyO
                      const NameOf& name_of) {
     std::vector<GrowthGroup> groups = groups_of<GrowthRow>(rows, key_of);
     std::ranges::sort(groups, {}, [&](const GrowthGroup& group) { return key_of(group.first()); });
-    return row_table(groups, RowFields<GrowthGroup>{
-        {"", [&](const GrowthGroup& group) { return name_of(*key_of(group.first())); }, std::move(title)},
-        {"", &GrowthGroup::size, Shown::number("scenes")},
-        {"", mean_of(&GrowthRow::cones), Shown::fixed("cones", 0)},
-        {"", mean_of(&GrowthRow::edges), Shown::fixed("edges", 0)},
-        {"", median_of(&GrowthRow::cpu_ms), Shown::fixed("median ms", 3)},
-        {"", quantile_of(&GrowthRow::cpu_ms, 0.95), Shown::fixed("p95 ms", 3)},
-        {"", quantile_of(&GrowthRow::cpu_ms, 1.0), Shown::fixed("max ms", 1)},
-        {"", mean_of(&GrowthRow::nodes), Shown::fixed("nodes", 2)},
-        {"", share_of(&GrowthRow::is_proven), Shown::percent("proven %", 1)}});
+    return row_table(
+        groups,
+        RowFields<GrowthGroup>{
+            {"", [&](const GrowthGroup& group) { return name_of(*key_of(group.first())); }, std::move(title)},
+            {"", &GrowthGroup::size, Shown::number("scenes")},
+            {"", mean_of(&GrowthRow::cones), Shown::fixed("cones", 0)},
+            {"", mean_of(&GrowthRow::edges), Shown::fixed("edges", 0)},
+            {"", median_of(&GrowthRow::cpu_ms), Shown::fixed("median ms", 3)},
+            {"", quantile_of(&GrowthRow::cpu_ms, 0.95), Shown::fixed("p95 ms", 3)},
+            {"", quantile_of(&GrowthRow::cpu_ms, 1.0), Shown::fixed("max ms", 1)},
+            {"", mean_of(&GrowthRow::nodes), Shown::fixed("nodes", 2)},
+            {"", share_of(&GrowthRow::is_proven), Shown::percent("proven %", 1)}});
 }
 
 std::string tables_of(const std::vector<GrowthRow>& rows) {
@@ -62,8 +65,8 @@ std::string tables_of(const std::vector<GrowthRow>& rows) {
     };
     const auto density = of_all([](const GrowthRow& row) { return static_cast<std::size_t>(row.density); });
     const auto range = [](std::size_t key) { return fmt::format("{}-{}", key, key + 1); };
-    const auto edges = of_all(
-        [](const GrowthRow& row) { return *(std::ranges::upper_bound(kEdgeClasses, row.edges) - 1); });
+    const auto edges =
+        of_all([](const GrowthRow& row) { return *(std::ranges::upper_bound(kEdgeClasses, row.edges) - 1); });
     const auto course = of_all([](const GrowthRow& row) { return row.scene->track; });
     return table_by(Shown::number("nearest"), rows, cones, itself) + "\nAll visible cones:\n" +
            table_by(Shown::number("density"), rows, density, range) + "\n" +
@@ -74,15 +77,16 @@ std::string tables_of(const std::vector<GrowthRow>& rows) {
 class GrowthStudy : public SolveStudy {
   public:
     GrowthStudy()
-        : SolveStudy({"growth", "how does the cost of path-pair grow with the cones and their density?",
-                      "Each scene's nearest cones at each size that it exceeds, and all its cones. Processor "
-                      "time of the one thread, from the scene in memory to the answer in memory; the limit is "
-                      "of wall clock. Density: how many others a cone has within 5.5 m, on average."},
-                     {.backends = {{"path-pair"}}, .sizes = {12, 20, 30, 40, 60, 80, 120}}) {}
+        : SolveStudy(
+              {"growth", "how does the cost of path-pair grow with the cones and their density?",
+               "Each scene's nearest cones at each size that it exceeds, and all its cones. Processor "
+               "time of the one thread, from the scene in memory to the answer in memory; the limit is "
+               "of wall clock. Density: how many others a cone has within 5.5 m, on average."},
+              {.backends = {{"path-pair"}}, .sizes = {12, 20, 30, 40, 60, 80, 120}}) {}
 
   protected:
     StudyResult aggregate(const SceneSet& set, SolveOptions solves) override {
-        const std::vector<AnnotatedScene> scenes = spread_scenes(set.scenes, solves.limit);
+        const std::vector<AnnotatedScene> scenes = spread(set.scenes, solves.limit);
         solves.limit.reset();
         std::erase(solves.sizes, kAllVisible);
         solves.sizes.push_back(kAllVisible);

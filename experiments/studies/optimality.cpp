@@ -1,5 +1,3 @@
-#include "experiments/studies/optimality.hpp"
-
 #include "conelane/check.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -19,6 +17,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -31,6 +30,61 @@
 
 namespace conelane::experiments {
 namespace {
+
+/// An objective: (29) with the costs that the parameters add to it.
+struct NamedCosts {
+    std::string name = "default";
+    RldParameters parameters;
+};
+
+struct OptimalityOptions {
+    std::string detector = "clc";        ///< one that enumerates
+    std::string beside = "front";        ///< one whose lanes are compared with the optimum; none if empty
+    std::optional<std::size_t> nearest;  ///< cone set of all; all cones if absent
+    std::vector<NamedCosts> costs{{}};   ///< at least one
+    std::size_t beam_width = 100;        ///< see beam_lane_graph
+    double time_limit_ms = 400.0;        ///< of the exact search, a scene
+    unsigned threads = 1;
+};
+
+/// A lane under an objective and against the ground truth.
+struct JudgedLane {
+    std::optional<double> objective;  ///< absent if RLD's constraints forbid the lane
+    Category category = Category::none;
+    double iou = 0.0;
+    std::optional<bool> usable;  ///< absent where no boundaries are known
+};
+
+/// One scene under one objective. Candidates are distinct as sets of edges.
+struct OptimalityRow {
+    const AnnotatedScene* scene = nullptr;
+    std::string costs;                        ///< the name of the objective
+    SolveStatus status = SolveStatus::error;  ///< of the exact search
+    std::optional<double> bound;
+    std::size_t candidates = 0;
+    std::size_t feasible = 0;             ///< of them, under RLD's constraints
+    std::optional<JudgedLane> optimum;    ///< the best lane that the exact search found
+    std::optional<JudgedLane> beam;       ///< of the beam search under the same objective
+    std::optional<JudgedLane> candidate;  ///< the feasible one of least objective; of equal ones the first
+    std::optional<JudgedLane> choice;     ///< what the method answers
+    std::optional<JudgedLane> beside;     ///< what the method beside it answers
+
+    /// (lane - optimum) / max(1, |optimum|), at least 0; where the optimum is proven and the lane has an
+    /// objective.
+    [[nodiscard]] std::optional<double> gap_of(const std::optional<JudgedLane>& lane) const {
+        if (!is_proven() || !lane || !lane->objective) return std::nullopt;
+        return relative_gap(*lane->objective, *optimum->objective);
+    }
+    /// That of the candidate.
+    [[nodiscard]] std::optional<double> gap() const { return gap_of(candidate); }
+    /// Whether the candidate's gap is within the solvers' tolerance; absent without a gap.
+    [[nodiscard]] std::optional<bool> is_equal() const {
+        if (!gap()) return std::nullopt;
+        return *candidate->objective - *optimum->objective <= kObjectiveTolerance;
+    }
+    /// Whether the optimum is known.
+    [[nodiscard]] bool is_proven() const { return status == SolveStatus::optimal; }
+};
 
 std::unique_ptr<LaneDetector> made(const std::string& name, const OptimalityOptions& options) {
     const DetectorRecipe& recipe = *find_method(name).recipe;
@@ -131,7 +185,7 @@ class Lap {
                 cones.id,
                 fmt::format("a {} is feasible, but the exact search proved that there is none", what));
         }
-        if (row.status == SolveStatus::optimal && value < *row.optimum->objective - kObjectiveTolerance) {
+        if (row.is_proven() && value < *row.optimum->objective - kObjectiveTolerance) {
             throw InvalidInput(cones.id, fmt::format("a {} has the objective {}, below the proven optimum {}",
                                                      what, value, *row.optimum->objective));
         }
@@ -197,12 +251,11 @@ RowFields<OptimalityRow> fields_of_file(const OptimalityOptions& options) {
         {{"false_positive_rate", [](const Row& row) { return row.scene->false_positive_rate; }},
          {"range", [](const Row& row) { return row.scene->range_m; }},
          {"condition",
-          [](const Row& row) {
-              return row.scene->condition.empty() ? FieldValue() : row.scene->condition;
-          }},
+          [](const Row& row) { return row.scene->condition.empty() ? FieldValue() : row.scene->condition; }},
          {"costs", &Row::costs},
          {"method", [&](const Row&) { return options.detector; }},
-         {"method_beside", [&](const Row&) { return options.beside.empty() ? FieldValue() : options.beside; }},
+         {"method_beside",
+          [&](const Row&) { return options.beside.empty() ? FieldValue() : options.beside; }},
          {"beam_width", [&](const Row&) { return options.beam_width; }},
          {"nearest", [&](const Row&) { return options.nearest; }},
          {"status", &Row::status},
@@ -213,33 +266,9 @@ RowFields<OptimalityRow> fields_of_file(const OptimalityOptions& options) {
     for (const auto& [name, lane] : kRivals)
         fields.push_back({name, [lane = lane](const Row& row) { return lane_value(row, row.*lane, true); }});
     fields.push_back({"gap", &Row::gap});
-    fields.push_back({"equal", [](const Row& row) {
-                          return row.gap() ? std::optional(row.is_optimal(row.candidate)) : std::nullopt;
-                      }});
+    fields.push_back({"equal", &Row::is_equal});
     return fields;
 }
-
-/// Quality of one lane a scene; no lane is neither usable nor a success.
-struct Quality {
-    std::size_t scenes = 0, known = 0, usable = 0, successes = 0;
-    double iou_sum = 0.0;
-
-    void add(const std::optional<JudgedLane>& lane) {
-        ++scenes;
-        if (!lane || lane->usable) ++known;
-        if (!lane) return;
-        if (lane->usable.value_or(false)) ++usable;
-        if (is_success(lane->category)) ++successes;
-        iou_sum += lane->iou;
-    }
-    /// usable / success / IoU in percent
-    [[nodiscard]] std::string text() const {
-        if (scenes == 0) return "-";
-        return fmt::format("{} / {} / {}", percent(share(usable, known), 1),
-                           percent(share(successes, scenes), 1),
-                           percent(iou_sum / static_cast<double>(scenes), 1));
-    }
-};
 
 using Group = RowGroup<OptimalityRow>;
 
@@ -260,12 +289,13 @@ std::vector<Group> groups_of_rows(std::span<const OptimalityRow> rows) {
 /// The columns of a group, then others.
 RowFields<Group> with_group(const RowFields<Group>& others) {
     using Row = OptimalityRow;
-    RowFields<Group> fields{
-        {"", first_of(&Row::costs), Shown::text("costs")},
-        {"",
-         first_of([](const Row& row) { return row.scene->condition.empty() ? "-" : row.scene->condition; }),
-         Shown::text("condition")},
-        {"", first_of([](const Row& row) { return row.scene->false_positive_rate; }), Shown::percent("fp %", 1)}};
+    RowFields<Group> fields{{"", first_of(&Row::costs), Shown::text("costs")},
+                            {"", first_of([](const Row& row) {
+                                 return row.scene->condition.empty() ? "-" : row.scene->condition;
+                             }),
+                             Shown::text("condition")},
+                            {"", first_of([](const Row& row) { return row.scene->false_positive_rate; }),
+                             Shown::percent("fp %", 1)}};
     fields.insert(fields.end(), others.begin(), others.end());
     return fields;
 }
@@ -273,18 +303,19 @@ RowFields<Group> with_group(const RowFields<Group>& others) {
 /// How near CLC's candidates are to the optimum.
 std::string candidates_table(std::span<const Group> groups) {
     using Row = OptimalityRow;
-    const auto of_compared = [](auto get) {
-        return [get](const Row& row) { return row.gap() ? std::optional(get(row)) : std::nullopt; };
-    };
-    const auto iou = [&](std::optional<JudgedLane> Row::*lane) {
-        return of_compared([lane](const Row& row) { return (row.*lane)->iou; });
-    };
-    const auto success = [&](std::optional<JudgedLane> Row::*lane) {
-        return of_compared([lane](const Row& row) { return is_success((row.*lane)->category) ? 1.0 : 0.0; });
-    };
-    const auto both = [](auto best, auto other) {
-        return [=](const Group& group) {
-            return percent(group.sample(best).mean(), 1) + " / " + percent(group.sample(other).mean(), 1);
+    /// The optimum and the candidate where both are compared.
+    const auto both = [](auto get) {
+        return [get](const Group& group) {
+            const auto of = [&](std::optional<JudgedLane> Row::*lane) {
+                return percent(group
+                                   .sample([&](const Row& row) -> std::optional<double> {
+                                       if (!row.gap()) return std::nullopt;
+                                       return get(*(row.*lane));
+                                   })
+                                   .mean(),
+                               1);
+            };
+            return of(&Row::optimum) + " / " + of(&Row::candidate);
         };
     };
     const auto feasible_share = [](const Group& group) {
@@ -292,98 +323,76 @@ std::string candidates_table(std::span<const Group> groups) {
         for (const Row* row : group.rows) feasible += row->feasible, candidates += row->candidates;
         return share(feasible, candidates);
     };
-    const auto equal = of_compared([](const Row& row) { return row.is_optimal(row.candidate) ? 1.0 : 0.0; });
-    const auto is_proven = [](const Row& row) {
-        return row.status == SolveStatus::optimal || row.status == SolveStatus::infeasible;
+    const auto is_decided = [](const Row& row) {
+        return row.is_proven() || row.status == SolveStatus::infeasible;
     };
-    return row_table(
-        groups,
-        with_group({{"", &Group::size, Shown::number("scenes")},
-                    {"", share_of(is_proven), Shown::percent("proven %", 1)},
-                    {"", feasible_share, Shown::percent("feasible candidates %", 1)},
-                    {"", count_of(&Row::gap), Shown::number("compared")},
-                    {"", mean_of(equal), Shown::percent("equal %", 1)},
-                    {"", median_of(&Row::gap), Shown::percent("median gap %", 3)},
-                    {"", quantile_of(&Row::gap, 0.95), Shown::percent("p95 gap %", 3)},
-                    {"", both(success(&Row::optimum), success(&Row::candidate)),
-                     Shown::number("success % opt / cand")},
-                    {"", both(iou(&Row::optimum), iou(&Row::candidate)), Shown::number("IoU % opt / cand")}}));
+    const auto success = both([](const JudgedLane& lane) { return is_success(lane.category); });
+    const auto iou = both([](const JudgedLane& lane) { return lane.iou; });
+    return row_table(groups, with_group({{"", &Group::size, Shown::number("scenes")},
+                                         {"", share_of(is_decided), Shown::percent("proven %", 1)},
+                                         {"", feasible_share, Shown::percent("feasible candidates %", 1)},
+                                         {"", count_of(&Row::gap), Shown::number("compared")},
+                                         {"", mean_of(&Row::is_equal), Shown::percent("equal %", 1)},
+                                         {"", median_of(&Row::gap), Shown::percent("median gap %", 3)},
+                                         {"", quantile_of(&Row::gap, 0.95), Shown::percent("p95 gap %", 3)},
+                                         {"", success, Shown::number("success % opt / cand")},
+                                         {"", iou, Shown::number("IoU % opt / cand")}}));
 }
 
-/// What all lanes are worth where the optimum is proven.
+/// What all lanes are worth where the optimum is proven: usable / success / IoU in percent. No lane is
+/// neither usable nor a success.
 std::string quality_table(std::span<const Group> groups) {
     using Row = OptimalityRow;
-    const auto is_optimal = [](const Row& row) { return row.status == SolveStatus::optimal; };
-    const auto quality = [&](std::optional<JudgedLane> Row::*lane) {
-        return [=](const Group& group) {
-            Quality of_proven;
-            for (const Row* row : group.rows) {
-                if (is_optimal(*row)) of_proven.add(row->*lane);
-            }
-            return of_proven.text();
+    const auto quality = [](std::optional<JudgedLane> Row::*lane) {
+        return [lane](const Group& group) {
+            const auto mean = [&](auto get) {
+                return percent(group
+                                   .sample([&](const Row& row) -> std::optional<double> {
+                                       if (!row.is_proven()) return std::nullopt;
+                                       return row.*lane ? get(*(row.*lane)) : 0.0;
+                                   })
+                                   .mean(),
+                               1);
+            };
+            using Figure = std::optional<double>;
+            return fmt::format("{} / {} / {}",
+                               mean([](const JudgedLane& one) -> Figure { return one.usable; }),
+                               mean([](const JudgedLane& one) -> Figure { return is_success(one.category); }),
+                               mean([](const JudgedLane& one) -> Figure { return one.iou; }));
         };
     };
-    RowFields<Group> fields = with_group({{"", count_of(is_optimal), Shown::number("proven")},
+    RowFields<Group> fields = with_group({{"", count_of(&Row::is_proven), Shown::number("proven")},
                                           {"", quality(&Row::optimum), Shown::number("optimum")}});
     for (const auto& [name, lane] : kRivals) fields.push_back({"", quality(lane), Shown::number(name)});
     return row_table(groups, fields);
 }
 
-/// A range of gaps to the optimum.
-struct GapRange {
-    const char* name;
-    double most;
-};
-constexpr std::array kRanges{GapRange{"none", 0.0}, GapRange{"to 1 %", 0.01}, GapRange{"to 10 %", 0.1},
-                             GapRange{"above", std::numeric_limits<double>::infinity()},
-                             GapRange{"forbidden", std::numeric_limits<double>::quiet_NaN()}};
-
-/// A lane whose scene has a proven optimum.
-struct Rivalry {
-    const OptimalityRow* row;
-    const Rival* rival;
-    const GapRange* range;
-
-    Rivalry(const OptimalityRow& of, const Rival& by) : row(&of), rival(&by), range(&kRanges.back()) {
-        const auto gap = of.gap_of(lane());
-        if (!gap) return;  // the rows forbid the lane
-        range = of.is_optimal(lane()) ? &kRanges.front() : &kRanges[1];
-        while (!of.is_optimal(lane()) && *gap > range->most) ++range;
+/// Each scene that counts (see `counts`) under each objective, in the order of the scenes, then of the
+/// objectives; the same with any number of threads. Throws InvalidInput where there is no such detector or
+/// the one that has to enumerate does not, and naming the scene where a lane has a lower objective than an
+/// optimum said to be proven or the independent checker rejects a lane graph.
+std::vector<OptimalityRow> optimality_rows(const SceneSet& set, const OptimalityOptions& options) {
+    const std::vector<AnnotatedScene>& scenes = set.scenes;
+    for (const std::string& name : {options.detector, options.beside}) {
+        if (!name.empty()) (void)find_method(name);
     }
-    [[nodiscard]] const std::optional<JudgedLane>& lane() const { return row->*(rival->lane); }
-};
-
-/// What a lane is worth by its gap to the optimum, of all conditions and rates.
-std::string gap_table(std::span<const OptimalityRow> rows) {
-    std::vector<Rivalry> all;
-    for (const Group& of_costs : groups_of<OptimalityRow>(rows, std::mem_fn(&OptimalityRow::costs))) {
-        for (const Rival& rival : kRivals) {
-            const auto first = static_cast<std::ptrdiff_t>(all.size());
-            for (const OptimalityRow* row : of_costs.rows) {
-                if (row->status == SolveStatus::optimal && row->*rival.lane) all.emplace_back(*row, rival);
+    const std::size_t costs = options.costs.size();
+    const std::vector<std::size_t> starts = lap_starts(scenes);
+    std::vector<OptimalityRow> rows(scenes.size() * costs);
+    Progress progress("optimality", scenes.size());
+    oneapi::tbb::task_arena arena(
+        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(std::size_t{0}, starts.size() - 1, [&](std::size_t lap) {
+            Lap driven(set.tracks, options);
+            for (std::size_t i = starts[lap]; i < starts[lap + 1]; ++i) {
+                if (counts(scenes[i])) driven.drive(scenes[i], std::span(rows).subspan(i * costs, costs));
+                progress.advance();
             }
-            std::ranges::stable_sort(all.begin() + first, all.end(), {}, &Rivalry::range);
-        }
-    }
-    const auto quality = [](auto lane_of) {
-        return [lane_of](const RowGroup<Rivalry>& group) {
-            Quality quality;
-            for (const Rivalry* one : group.rows) quality.add(lane_of(*one));
-            return quality.text();
-        };
-    };
-    const RowFields<RowGroup<Rivalry>> fields{
-        {"", first_of([](const Rivalry& one) { return one.row->costs; }), Shown::text("costs")},
-        {"", first_of([](const Rivalry& one) { return one.rival->name; }), Shown::text("lane")},
-        {"", first_of([](const Rivalry& one) { return one.range->name; }), Shown::text("gap")},
-        {"", &RowGroup<Rivalry>::size, Shown::number("scenes")},
-        {"", quality([](const Rivalry& one) { return one.row->optimum; }), Shown::number("optimum")},
-        {"", quality([](const Rivalry& one) { return one.lane(); }), Shown::number("lane")}};
-    return row_table(groups_of<Rivalry>(all,
-                                        [](const Rivalry& one) {
-                                            return std::tuple(one.row->costs, one.rival, one.range);
-                                        }),
-                     fields);
+        });
+    });
+    std::erase_if(rows, [](const OptimalityRow& row) { return row.scene == nullptr; });
+    return rows;
 }
 
 class OptimalityStudy : public SceneStudy {
@@ -432,7 +441,8 @@ class OptimalityStudy : public SceneStudy {
         for (const std::string& name : costs_)
             options_.costs.push_back({name, ParameterSource{name == "default" ? "" : name, pairing_}.load()});
         const std::vector<OptimalityRow> rows = optimality_rows(set, options_);
-        StudyResult result{optimality_table(rows)};
+        const std::vector<Group> groups = groups_of_rows(rows);
+        StudyResult result{candidates_table(groups) + "\n" + quality_table(groups)};
         result.add_rows(rows, fields_of_file(options_));
         return result;
     }
@@ -444,44 +454,6 @@ class OptimalityStudy : public SceneStudy {
 };
 
 }  // namespace
-
-std::optional<double> OptimalityRow::gap_of(const std::optional<JudgedLane>& lane) const {
-    if (status != SolveStatus::optimal || !lane || !lane->objective) return std::nullopt;
-    return relative_gap(*lane->objective, *optimum->objective);
-}
-
-bool OptimalityRow::is_optimal(const std::optional<JudgedLane>& lane) const {
-    return gap_of(lane) && *lane->objective - *optimum->objective <= kObjectiveTolerance;
-}
-
-std::vector<OptimalityRow> optimality_rows(const SceneSet& set, const OptimalityOptions& options) {
-    const std::vector<AnnotatedScene>& scenes = set.scenes;
-    for (const std::string& name : {options.detector, options.beside}) {
-        if (!name.empty()) (void)find_method(name);
-    }
-    const std::size_t costs = options.costs.size();
-    const std::vector<std::size_t> starts = lap_starts(scenes);
-    std::vector<OptimalityRow> rows(scenes.size() * costs);
-    Progress progress("optimality", scenes.size());
-    oneapi::tbb::task_arena arena(
-        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
-    arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, starts.size() - 1, [&](std::size_t lap) {
-            Lap driven(set.tracks, options);
-            for (std::size_t i = starts[lap]; i < starts[lap + 1]; ++i) {
-                if (counts(scenes[i])) driven.drive(scenes[i], std::span(rows).subspan(i * costs, costs));
-                progress.advance();
-            }
-        });
-    });
-    std::erase_if(rows, [](const OptimalityRow& row) { return row.scene == nullptr; });
-    return rows;
-}
-
-std::string optimality_table(std::span<const OptimalityRow> rows) {
-    const std::vector<Group> groups = groups_of_rows(rows);
-    return candidates_table(groups) + "\n" + quality_table(groups) + "\n" + gap_table(rows);
-}
 
 std::unique_ptr<Study> make_optimality_study() {
     return std::make_unique<OptimalityStudy>();

@@ -1,6 +1,6 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/world/ground_truth.hpp"
 #include "evaluation/scoring/score.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "experiments/studies/solve_study.hpp"
 #include "experiments/studies/study.hpp"
 #include "solvers/registry.hpp"
@@ -22,9 +22,9 @@ std::optional<std::size_t> nearest_of(std::size_t size) {
 
 /// A solve beside the proven least cost. Without an answer, it is inaccurate and counts with its time.
 struct RelaxedRow : SolveRow {
-    bool is_accurate = false;           ///< RLD paper, IV-B
-    std::optional<double> least = {};   ///< absent where path-pair proved no optimum
-    std::optional<double> gap = {};     ///< (objective - least) / max(1, |least|), of an answer
+    bool is_accurate = false;          ///< RLD paper, IV-B
+    std::optional<double> least = {};  ///< absent where path-pair proved no optimum
+    std::optional<double> gap = {};    ///< (objective - least) / max(1, |least|), of an answer
 
     [[nodiscard]] bool is_best() const { return gap && *objective <= *least + kObjectiveTolerance; }
 };
@@ -55,8 +55,9 @@ std::vector<RelaxedRow> relaxed(std::vector<SolveRow> solves) {
         if (const auto known = least.find(key); !row.least && known != least.end()) row.least = known->second;
         if (!row.least || !row.objective) continue;
         if (*row.objective < *row.least - kObjectiveTolerance) {
-            throw InvalidInput(row.scene->scene.id, fmt::format("{} answers {}, below the least cost {}",
-                                                                row.backend.solver, *row.objective, *row.least));
+            throw InvalidInput(row.scene->scene.id,
+                               fmt::format("{} answers {}, below the least cost {}", row.backend.solver,
+                                           *row.objective, *row.least));
         }
         row.gap = relative_gap(*row.objective, *row.least);
     }
@@ -66,14 +67,15 @@ std::vector<RelaxedRow> relaxed(std::vector<SolveRow> solves) {
 class RelaxationsStudy : public SolveStudy {
   public:
     RelaxationsStudy()
-        : SolveStudy({"relaxations",
-                      "does relaxing the binary constraints decrease latency (RLD paper, V), and what does it "
-                      "cost in accuracy?",
-                      "The nearest cones of each scene that has enough cones and a ground truth among them; "
-                      "every solver that proves nothing, and path-pair, which gives the optimum; one thread. "
-                      "Times are wall clock, including making the problem. Gap: (objective - optimum) / "
-                      "max(1, |optimum|), over the answers."},
-                     {.sizes = {8, 12, 16, 20, 30}, .time_limit_ms = kRealTimeLimit_ms}) {}
+        : SolveStudy(
+              {"relaxations",
+               "does relaxing the binary constraints decrease latency (RLD paper, V), and what does it "
+               "cost in accuracy?",
+               "The nearest cones of each scene that has enough cones and a ground truth among them; "
+               "every solver that proves nothing, and path-pair, which gives the optimum; one thread. "
+               "Times are wall clock, including making the problem. Gap: (objective - optimum) / "
+               "max(1, |optimum|), over the answers."},
+              {.sizes = {8, 12, 16, 20, 30}, .time_limit_ms = kRealTimeLimit_ms}) {}
 
   protected:
     StudyResult aggregate(const SceneSet& set, SolveOptions solves) override {

@@ -8,6 +8,7 @@
 #include "evaluation/seeded_random.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
+#include "experiments/options/cone_set_sizes.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/machine.hpp"
 #include "model/deadline.hpp"
@@ -70,8 +71,7 @@ class Driver {
             if (limit_ms >= std::min(row.latency_ms, options_.time_limit_ms)) break;
             const SolveRow step = solve(*row.scene, cones, {.limits = {limit_ms}});
             if (step.status == SolveStatus::error) continue;
-            const double time_ms =
-                step.is_optimal() ? step.latency_ms : std::max(limit_ms, step.latency_ms);
+            const double time_ms = step.is_optimal() ? step.latency_ms : std::max(limit_ms, step.latency_ms);
             row.steps.push_back({time_ms, step.objective, step.bound});
         }
         std::ranges::sort(row.steps, {}, &Knowledge::time_ms);
@@ -99,8 +99,8 @@ class Driver {
                      .latency_ms = solved_ms,
                      .cpu_ms = thread_cpu_ms() - begin_ms,
                      .engine_ms = solver_.engine_ms()};
-        row.edges = static_cast<std::size_t>(
-            std::ranges::count(problem.edges, false, &ProblemEdge::high_cost));
+        row.edges =
+            static_cast<std::size_t>(std::ranges::count(problem.edges, false, &ProblemEdge::high_cost));
         if (!report.lane_graph) return row;
         const Claim claim{row.is_optimal(), *report.objective, report.bound};
         const CheckReport checked = check(cones, options_.parameters, *report.lane_graph, claim);
@@ -125,7 +125,7 @@ std::vector<const AnnotatedScene*> scenes_of_size(std::span<const AnnotatedScene
     for (const AnnotatedScene& scene : scenes) {
         if (options.wanted ? options.wanted(scene, size) : has_cones(scene, size)) wanted.push_back(&scene);
     }
-    return spread(std::move(wanted), options.limit);
+    return spread(wanted, options.limit);
 }
 
 void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedScene> scenes,
@@ -173,14 +173,6 @@ Scene cones_of(const AnnotatedScene& scene, std::size_t size) {
 
 bool has_cones(const AnnotatedScene& scene, std::size_t size) {
     return nearest_ahead(scene.scene, size).cones.size() == size;
-}
-
-std::vector<const AnnotatedScene*> spread(std::vector<const AnnotatedScene*> scenes,
-                                          std::optional<std::size_t> limit) {
-    if (!limit || scenes.size() <= *limit) return scenes;
-    std::vector<const AnnotatedScene*> some;
-    for (std::size_t i = 0; i < *limit; ++i) some.push_back(scenes[i * scenes.size() / *limit]);
-    return some;
 }
 
 double relative_gap(double objective, double optimum) {

@@ -2,8 +2,8 @@
 
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/scoring/solver_measures.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/answer_errors.hpp"
 #include "experiments/studies/backend.hpp"
 #include "experiments/studies/row_fields.hpp"
@@ -27,9 +27,6 @@ inline constexpr std::size_t kAllVisible = 0;
 [[nodiscard]] Scene cones_of(const AnnotatedScene& scene, std::size_t size);
 /// Whether so many cones are ahead.
 [[nodiscard]] bool has_cones(const AnnotatedScene& scene, std::size_t size);
-/// At most `limit` of these, evenly spread.
-[[nodiscard]] std::vector<const AnnotatedScene*> spread(std::vector<const AnnotatedScene*> scenes,
-                                                        std::optional<std::size_t> limit);
 
 /// Objectives that differ by at most this are equal: the possible error of a solver's answer, see
 /// SolveLimits.
@@ -43,8 +40,8 @@ struct SolveOptions {
     std::vector<Backend> backends = {};
     std::vector<std::size_t> sizes = {};  ///< may contain kAllVisible
     RldParameters parameters = {};
-    double time_limit_ms = 1000.0;           ///< of a solve
-    std::optional<std::size_t> limit = {};   ///< scenes of each size at most, evenly spread; all if absent
+    double time_limit_ms = 1000.0;          ///< of a solve
+    std::optional<std::size_t> limit = {};  ///< scenes of each size at most, evenly spread; all if absent
     /// The scenes of a size; empty: those that have enough cones.
     std::function<bool(const AnnotatedScene& scene, std::size_t size)> wanted = {};
     bool with_machine = false;  ///< blocks have memory and the time of the reference problem
@@ -60,7 +57,7 @@ struct SolveOptions {
 /// One solve.
 struct SolveRow {
     const AnnotatedScene* scene = nullptr;
-    std::size_t size = 0;         ///< the requested one, or kAllVisible
+    std::size_t size = 0;  ///< the requested one, or kAllVisible
     std::size_t cones = 0;
     std::size_t permutation = 0;  ///< 0: original order
     Backend backend = {};
@@ -74,8 +71,8 @@ struct SolveRow {
     int rounds = 0;         ///< number of times the program was solved
     std::size_t edges = 0;  ///< that (27) allows
     double build_ms = 0.0;
-    double latency_ms = 0.0;  ///< wall clock from the scene to the answer
-    double cpu_ms = 0.0;      ///< processor time of the thread in that
+    double latency_ms = 0.0;               ///< wall clock from the scene to the answer
+    double cpu_ms = 0.0;                   ///< processor time of the thread in that
     std::optional<double> engine_ms = {};  ///< measured by the solver itself
     /// A claim that the checked lane graph of another backend on the same cones contradicts: `message` names
     /// it. The status remains the claimed one.

@@ -51,13 +51,4 @@ void require_ascending(const std::string& name, const std::vector<double>& limit
         throw InvalidInput(name, "must be in ascending order");
 }
 
-std::vector<AnnotatedScene> spread_scenes(const std::vector<AnnotatedScene>& scenes,
-                                          std::optional<std::size_t> limit) {
-    std::vector<const AnnotatedScene*> all;
-    for (const AnnotatedScene& scene : scenes) all.push_back(&scene);
-    std::vector<AnnotatedScene> some;
-    for (const AnnotatedScene* const scene : spread(std::move(all), limit)) some.push_back(*scene);
-    return some;
-}
-
 }  // namespace conelane::experiments

@@ -37,10 +37,6 @@ CLI::Option* add_limits_option(CLI::App& command, const std::string& name, std::
                                const std::string& description);
 void require_ascending(const std::string& name, const std::vector<double>& limits_ms);
 
-/// At most `limit` scenes, evenly spread.
-[[nodiscard]] std::vector<AnnotatedScene> spread_scenes(const std::vector<AnnotatedScene>& scenes,
-                                                        std::optional<std::size_t> limit);
-
 /// Scene and track, then the other fields of a row.
 template <typename Row>
 [[nodiscard]] RowFields<Row> with_scene(const RowFields<Row>& others) {

@@ -23,9 +23,9 @@ struct StudyDescription {
 };
 
 struct StudyResult {
-    std::string table = {};         ///< for a terminal; ends with a line feed
-    std::vector<Json> rows = {};    ///< for a file, an object each
-    AnswerErrors errors = {};       ///< if answers of status error are counted instead of thrown
+    std::string table = {};       ///< for a terminal; ends with a line feed
+    std::vector<Json> rows = {};  ///< for a file, an object each
+    AnswerErrors errors = {};     ///< if answers of status error are counted instead of thrown
 
     template <typename Rows, typename Row>
     void add_rows(const Rows& all, const RowFields<Row>& fields) {
