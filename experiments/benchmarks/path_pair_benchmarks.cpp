@@ -22,7 +22,6 @@
 
 #include <array>
 #include <cstdint>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -52,7 +51,6 @@ std::vector<Ablation> ablations() {
     return all;
 }
 
-using Scenes = std::shared_ptr<const std::vector<AnnotatedScene>>;
 using Problems = std::vector<LaneGraphProblem>;
 
 Problems problems_of(const std::vector<AnnotatedScene>& scenes, std::size_t size) {
@@ -126,7 +124,7 @@ void run_verification(benchmark::State& state, const Problems& problems) {
         static_cast<double>(verified), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void register_all(const Scenes& all) {
+void register_all(const SharedScenes& all) {
     for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 0}) {
         for (const Ablation& ablation : ablations()) {
             const std::string name = std::string("ablation/") + ablation.name + "/" + std::to_string(size);
@@ -158,16 +156,6 @@ void register_all(const Scenes& all) {
 }  // namespace conelane::experiments
 
 int main(int argument_count, char** arguments) {
-    benchmark::Initialize(&argument_count, arguments);
-    if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
-    try {
-        namespace experiments = conelane::experiments;
-        experiments::register_all(std::make_shared<const std::vector<conelane::AnnotatedScene>>(
-            experiments::benchmark_scenes(0.3)));
-    } catch (const std::exception& failure) {
-        std::cerr << "path_pair_benchmarks: " << failure.what() << '\n';
-        return 2;
-    }
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    return conelane::experiments::run_benchmarks(argument_count, arguments, 0.3,
+                                                 conelane::experiments::register_all);
 }

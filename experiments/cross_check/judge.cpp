@@ -9,6 +9,7 @@
 #include "solvers/registry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -269,17 +270,8 @@ std::vector<CheckedSolver> make_checked_solvers(std::span<const std::string> nam
 }
 
 std::string_view to_string(CrossCheckOutcome outcome) {
-    switch (outcome) {
-        case CrossCheckOutcome::same_optimum:
-            return "same optimum";
-        case CrossCheckOutcome::infeasible:
-            return "infeasible";
-        case CrossCheckOutcome::undecided:
-            return "undecided";
-        case CrossCheckOutcome::differ:
-            break;
-    }
-    return "differ";
+    constexpr std::array<std::string_view, 4> kNames{"same optimum", "infeasible", "undecided", "differ"};
+    return kNames.at(static_cast<std::size_t>(outcome));
 }
 
 CrossCheckVerdict judge(const CrossCheckCase& drawn, std::span<const CheckedSolver> solvers,
