@@ -1,6 +1,7 @@
 #include "evaluation/scoring/score_table.hpp"
 
 #include "evaluation/scoring/published_figures.hpp"
+#include "evaluation/scoring/text_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +10,10 @@
 #include <map>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane {
@@ -56,14 +59,6 @@ constexpr std::array<std::string_view, Column::count> kHeader{
 using Line = std::array<std::string, Column::count>;
 constexpr std::string_view kUnknown = "-";
 
-std::string number(std::optional<double> value, int digits) {
-    return value ? fmt::format("{:.{}f}", *value, digits) : std::string(kUnknown);
-}
-
-std::string percent(std::optional<double> share) {
-    return share ? number(100.0 * *share, 1) : std::string(kUnknown);
-}
-
 Line empty_line() {
     Line line;
     line.fill(std::string(kUnknown));
@@ -75,36 +70,36 @@ Line line_of(const ScoreRow& row) {
     Line line = empty_line();
     line[Column::detector] = row.key.detector_label();
     if (!row.key.condition.empty()) line[Column::condition] = row.key.condition;
-    line[Column::rate] = percent(row.key.false_positive_rate);
-    line[Column::range] = number(row.key.range_m, 0);
+    line[Column::rate] = percent(row.key.false_positive_rate, 1);
+    line[Column::range] = fixed(row.key.range_m, 0);
     line[Column::scenes] = fmt::format("{}{}", summary.scenes, summary.trained_on > 0 ? "*" : "");
-    line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
+    line[Column::ground_truth] = percent(summary.share(Category::ground_truth), 1);
     // An error counts as no lane in every other measure; here each scene is in exactly one column.
     const double error_share = static_cast<double>(summary.errors) / static_cast<double>(summary.scenes);
-    line[Column::none] = percent(std::max(0.0, summary.share(Category::none) - error_share));
-    line[Column::error] = percent(error_share);
+    line[Column::none] = percent(std::max(0.0, summary.share(Category::none) - error_share), 1);
+    line[Column::error] = percent(error_share, 1);
     // If divergence is unknown in all scenes, all shares that depend on it are unknown, not zero.
     if (summary.divergence_unknown < summary.scenes) {
-        line[Column::near_ground_truth] = percent(summary.share(Category::near_ground_truth));
-        line[Column::too_short] = percent(summary.share(Category::too_short));
-        line[Column::diverging_from_20] = percent(summary.share(Category::diverging_from_20));
-        line[Column::diverging_below_20] = percent(summary.share(Category::diverging_below_20));
-        line[Column::success] = percent(summary.success_share);
+        line[Column::near_ground_truth] = percent(summary.share(Category::near_ground_truth), 1);
+        line[Column::too_short] = percent(summary.share(Category::too_short), 1);
+        line[Column::diverging_from_20] = percent(summary.share(Category::diverging_from_20), 1);
+        line[Column::diverging_below_20] = percent(summary.share(Category::diverging_below_20), 1);
+        line[Column::success] = percent(summary.success_share, 1);
     }
-    line[Column::usable] = percent(summary.usable_share);
-    line[Column::lateral_median] = number(summary.lateral_median_m, 2);
-    line[Column::lateral_p95] = number(summary.lateral_p95_m, 2);
-    line[Column::heading_p95] = number(summary.heading_p95_rad, 3);
-    line[Column::unsteady] = percent(summary.unsteady_share);
-    line[Column::iou] = percent(summary.mean_iou);
-    line[Column::accurate] = percent(summary.accurate_share);
-    line[Column::complete] = percent(summary.complete_share);
-    line[Column::solved] = percent(summary.solved_share);
-    line[Column::median] = number(summary.latency.median_ms, 2);
-    line[Column::mean] = number(summary.latency.mean_ms, 2);
-    line[Column::p95] = number(summary.latency.p95_ms, 2);
-    line[Column::p99] = number(summary.latency.p99_ms, 2);
-    line[Column::max] = number(summary.latency.max_ms, 2);
+    line[Column::usable] = percent(summary.usable_share, 1);
+    line[Column::lateral_median] = fixed(summary.lateral_median_m, 2);
+    line[Column::lateral_p95] = fixed(summary.lateral_p95_m, 2);
+    line[Column::heading_p95] = fixed(summary.heading_p95_rad, 3);
+    line[Column::unsteady] = percent(summary.unsteady_share, 1);
+    line[Column::iou] = percent(summary.mean_iou, 1);
+    line[Column::accurate] = percent(summary.accurate_share, 1);
+    line[Column::complete] = percent(summary.complete_share, 1);
+    line[Column::solved] = percent(summary.solved_share, 1);
+    line[Column::median] = fixed(summary.latency.median_ms, 2);
+    line[Column::mean] = fixed(summary.latency.mean_ms, 2);
+    line[Column::p95] = fixed(summary.latency.p95_ms, 2);
+    line[Column::p99] = fixed(summary.latency.p99_ms, 2);
+    line[Column::max] = fixed(summary.latency.max_ms, 2);
     return line;
 }
 
@@ -123,33 +118,33 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
         if (any_rate && !has_rate(rows, row.false_positive_rate)) continue;
         Line line = empty_line();
         line[Column::detector] = "CLC paper";
-        line[Column::rate] = percent(row.false_positive_rate);
+        line[Column::rate] = percent(row.false_positive_rate, 1);
         line[Column::range] = "30+50";
-        line[Column::ground_truth] = number(row.ground_truth, 1);
-        line[Column::near_ground_truth] = number(row.near_ground_truth, 1);
-        line[Column::too_short] = number(row.too_short, 1);
-        line[Column::diverging_from_20] = number(row.diverging_from_20, 1);
-        line[Column::diverging_below_20] = number(row.diverging_below_20, 1);
-        line[Column::success] = number(row.success, 1);
-        line[Column::iou] = number(row.mean_iou, 1);
-        line[Column::complete] = number(row.complete, 1);
-        line[Column::median] = "<" + number(kPublishedClcMedianBelow_ms, 0);
-        line[Column::max] = number(kPublishedClcMax_ms, 0);
+        line[Column::ground_truth] = fixed(row.ground_truth, 1);
+        line[Column::near_ground_truth] = fixed(row.near_ground_truth, 1);
+        line[Column::too_short] = fixed(row.too_short, 1);
+        line[Column::diverging_from_20] = fixed(row.diverging_from_20, 1);
+        line[Column::diverging_below_20] = fixed(row.diverging_below_20, 1);
+        line[Column::success] = fixed(row.success, 1);
+        line[Column::iou] = fixed(row.mean_iou, 1);
+        line[Column::complete] = fixed(row.complete, 1);
+        line[Column::median] = "<" + fixed(kPublishedClcMedianBelow_ms, 0);
+        line[Column::max] = fixed(kPublishedClcMax_ms, 0);
         lines.push_back(line);
     }
     for (const PublishedRldRow& row : kPublishedRld) {
         Line line = empty_line();
         line[Column::detector] = fmt::format("RLD paper {}", row.printed_ratio);
-        line[Column::rate] = percent(row.false_positive_rate);
+        line[Column::rate] = percent(row.false_positive_rate, 1);
         line[Column::accurate] =
-            (row.upper_bound ? ">" : "") + number(100.0 - row.inaccurate, row.upper_bound ? 0 : 2);
+            (row.upper_bound ? ">" : "") + fixed(100.0 - row.inaccurate, row.upper_bound ? 0 : 2);
         lines.push_back(line);
     }
     Line timing = empty_line();
     timing[Column::detector] = fmt::format("RLD paper n={}", kPublishedRldConeSet);
-    timing[Column::solved] = number(kPublishedRldSolved, 2);
-    timing[Column::mean] = number(kPublishedRldMean_ms, 2);
-    timing[Column::p95] = number(kPublishedRldP95_ms, 2);
+    timing[Column::solved] = fixed(kPublishedRldSolved, 2);
+    timing[Column::mean] = fixed(kPublishedRldMean_ms, 2);
+    timing[Column::p95] = fixed(kPublishedRldP95_ms, 2);
     lines.push_back(timing);
     return lines;
 }
@@ -177,34 +172,28 @@ std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
 }
 
 std::string score_table(std::span<const ScoreRow> rows) {
-    Line header;
-    std::ranges::transform(kHeader, header.begin(),
-                           [](std::string_view title) { return std::string(title); });
-    std::vector<Line> own;
-    for (const ScoreRow& row : rows) own.push_back(line_of(row));
-    const std::vector<Line> published = published_lines(rows);
-
-    std::array<std::size_t, kHeader.size()> widths{};
-    const auto widen = [&](const Line& line) {
-        for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-    };
-    widen(header);
-    std::ranges::for_each(own, widen);
-    std::ranges::for_each(published, widen);
-
     const bool is_condition_named =
         std::ranges::any_of(rows, [](const ScoreRow& row) { return !row.key.condition.empty(); });
-    std::string table;
-    const auto write = [&](const Line& line) {
-        table += fmt::format("{:<{}}", line[Column::detector], widths[Column::detector]);
-        for (std::size_t i = 1; i < line.size(); ++i) {
-            if (i == Column::condition && !is_condition_named) continue;
-            table += fmt::format("  {:>{}}", line[i], widths[i]);
-        }
-        table += '\n';
+    const auto is_shown = [&](std::size_t column) {
+        return column != Column::condition || is_condition_named;
     };
-    write(header);
-    std::ranges::for_each(own, write);
+    std::vector<TextTable::Column> columns;
+    for (std::size_t i = 0; i < kHeader.size(); ++i) {
+        if (is_shown(i)) columns.push_back({std::string(kHeader[i]), i == Column::detector});
+    }
+    TextTable text(std::move(columns), 2);
+    const auto add = [&](const Line& line) {
+        std::vector<std::string> cells;
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            if (is_shown(i)) cells.push_back(line[i]);
+        }
+        text.add(std::move(cells));
+    };
+    for (const ScoreRow& row : rows) add(line_of(row));
+    std::ranges::for_each(published_lines(rows), add);
+    const std::vector<std::string> lines = text.lines();
+    const auto published = lines.begin() + 1 + static_cast<std::ptrdiff_t>(rows.size());
+    std::string table = fmt::format("{}", fmt::join(lines.begin(), published, ""));
     std::size_t unknown = 0;
     for (const ScoreRow& row : rows) unknown += row.summary.divergence_unknown;
     if (unknown > 0) {
@@ -214,8 +203,7 @@ std::string score_table(std::span<const ScoreRow> rows) {
     if (std::ranges::any_of(rows, [](const ScoreRow& row) { return row.summary.trained_on > 0; }))
         table += "* with courses that the method has learned from: no held-out figure\n";
     table += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
-    std::ranges::for_each(published, write);
-    return table;
+    return table + fmt::format("{}", fmt::join(published, lines.end(), ""));
 }
 
 std::string ScoreKey::detector_label() const {

@@ -6,8 +6,6 @@
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/cross_check/case_file.hpp"
-#include "experiments/cross_check/shrink.hpp"
 #include "experiments/progress/progress.hpp"
 #include "model/deadline.hpp"
 

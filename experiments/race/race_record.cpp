@@ -1,10 +1,10 @@
 #include "experiments/race/race_record.hpp"
 
-#include "experiments/studies/text_table.hpp"
+#include "evaluation/scoring/statistics.hpp"
+#include "evaluation/scoring/text_table.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -17,15 +17,6 @@ namespace conelane::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::optional<double> quantile(std::vector<double> values, double share) {
-    if (values.empty()) return std::nullopt;
-    std::ranges::sort(values);
-    const double rank = share * static_cast<double>(values.size() - 1);
-    const auto low = static_cast<std::size_t>(rank);
-    const std::size_t high = std::min(low + 1, values.size() - 1);
-    return values[low] + (rank - static_cast<double>(low)) * (values[high] - values[low]);
-}
 
 /// A method with a share of false positives.
 using Row = std::pair<std::string, double>;
@@ -52,12 +43,10 @@ auto grouped(std::span<const Heat> heats, const Of& of) {
 
 /// The numbers of the races that have one.
 template <typename Number>
-std::vector<double> known(std::span<const RaceResult* const> results, const Number& number) {
-    std::vector<double> values;
-    for (const RaceResult* result : results) {
-        if (const std::optional<double> value = number(*result)) values.push_back(*value);
-    }
-    return values;
+Sample known(std::span<const RaceResult* const> results, const Number& number) {
+    Sample sample;
+    for (const RaceResult* result : results) sample.add(number(*result));
+    return sample;
 }
 
 template <typename Number>
@@ -106,7 +95,7 @@ std::string lost_table(std::span<const Heat> heats) {
         if (driven_m.empty()) continue;
         any = true;
         table.add({place.first, place.second.first, fmt::format("{}", place.second.second),
-                   fmt::format("{} of {}", driven_m.size(), races.size()), fixed(quantile(driven_m, 0.5), 0),
+                   fmt::format("{} of {}", driven_m.size(), races.size()), fixed(median(driven_m), 0),
                    fmt::format("{}", fmt::join(how, ", "))});
     }
     return any ? table.text() : "";
@@ -140,15 +129,12 @@ std::string race_table(std::span<const Heat> heats, int laps) {
             return static_cast<std::size_t>(sum(races, [&](const RaceResult& r) { return r.*number; }));
         };
         const auto half = [&](std::optional<double> RaceResult::*number) {
-            return quantile(known(races, [&](const RaceResult& r) { return r.*number; }), 0.5);
+            return known(races, [&](const RaceResult& r) { return r.*number; }).median();
         };
         const double time_s = sum(races, [](const RaceResult& r) { return r.time_s; });
         const double old_s = sum(races, [](const RaceResult& r) { return r.old_path_s; });
         const auto finished = sum(races, [](const RaceResult& r) { return r.finished() ? 1 : 0; });
         const auto count = static_cast<double>(races.size());
-        const std::vector<double> unsteady =
-            known(races, [](const RaceResult& r) { return r.unsteady_share; });
-        const double unsteady_sum = std::accumulate(unsteady.begin(), unsteady.end(), 0.0);
         const std::size_t frames = total(&RaceResult::frames);
         const std::size_t laps_wanted = races.size() * static_cast<std::size_t>(laps);
         table.add({row.first, fmt::format("{}", row.second), std::to_string(races.size()),
@@ -158,7 +144,7 @@ std::string race_table(std::span<const Heat> heats, int laps) {
                    fixed(half(&RaceResult::lateral_error_p95_m), 2),
                    percent(share(total(&RaceResult::frames_without_path), frames), 2),
                    time_s > 0.0 ? percent(old_s / time_s, 2) : "-",
-                   unsteady.empty() ? "-" : percent(unsteady_sum / static_cast<double>(unsteady.size()), 1),
+                   percent(known(races, [](const RaceResult& r) { return r.unsteady_share; }).mean(), 1),
                    percent(share(total(&RaceResult::wrong_unflagged), frames), 2)});
     }
     const std::string lost = lost_table(heats);
@@ -168,10 +154,11 @@ std::string race_table(std::span<const Heat> heats, int laps) {
 std::string answer_time_table(std::span<const Heat> heats) {
     TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
     for (const auto& [detector, races] : grouped(heats, [](const Heat& heat) { return heat.detector; })) {
-        std::vector<double> times_ms;
-        for (const RaceResult* race : races)
-            times_ms.insert(times_ms.end(), race->answer_ms.begin(), race->answer_ms.end());
-        table.add({detector, fixed(quantile(times_ms, 0.5), 3), fixed(quantile(times_ms, 0.99), 3)});
+        Sample times_ms;
+        for (const RaceResult* race : races) {
+            for (const double answer_ms : race->answer_ms) times_ms.add(answer_ms);
+        }
+        table.add({detector, fixed(times_ms.median(), 3), fixed(times_ms.quantile(0.99), 3)});
     }
     return table.text();
 }

@@ -1,23 +1,18 @@
-#include "experiments/studies/front_beam.hpp"
-
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/studies/study_options.hpp"
-#include "experiments/studies/text_table.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_judge.hpp"
+#include "graph_search/front/front_search.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -31,6 +26,33 @@ namespace {
 constexpr double kSameScore = 1e-4;
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
+struct FrontBeamOptions {
+    FrontWeights weights;
+    std::vector<std::size_t> beams{5, 10, 15, 30, 100};  ///< states a level, with the detector's other limits
+    /// The last row except for those of `exhaustive_ms`: the widest search, with which the others are
+    /// compared.
+    std::size_t reference_beam = 400;
+    double reference_drop = 12.0;
+    /// A row for each: the search that leaves nothing out (no drop, no merge), stopped after this time.
+    std::vector<double> exhaustive_ms;
+};
+
+/// One width over all scenes with a ground truth. Shares are of these.
+struct FrontBeamRow {
+    std::size_t beam = 0;  ///< 0: no limit
+    double drop = 0.0;     ///< infinity: none
+    std::size_t scenes = 0;
+    double proven = 0.0;        ///< share whose search left nothing out: no lane has a higher score
+    double best_score = 0.0;    ///< share with a lane of the highest score that any row has met
+    double first_usable = 0.0;  ///< by score alone
+    double usable = 0.0;        ///< as the judge orders the best lanes
+    double any_usable = 0.0;    ///< share with a usable lane among those judged
+    double iou = 0.0;           ///< mean, of the judge's first lane
+    double median_ms = 0.0;     ///< of search and judge together
+    double p95_ms = 0.0;
+    double worst_ms = 0.0;
+};
+
 /// One width, scene by scene.
 class Width {
   public:
@@ -43,7 +65,7 @@ class Width {
 
     /// The highest score of a lane; minus infinity if there is none.
     double drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         SearchBudget budget;
         budget.deadline = Deadline(limit_ms_);
         search_.begin(scene.scene, cost_, options_);
@@ -56,8 +78,7 @@ class Width {
             contenders_.push_back({lane.parent, lane.score});
         }
         if (!contenders_.empty()) judge_.compare(search_, contenders_);
-        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-        times_ms_.push_back(took.count());
+        times_ms_.push_back(watch.elapsed_ms());
         ++row_.scenes;
         if (contenders_.empty()) return -std::numeric_limits<double>::infinity();
         bool any = false;
@@ -112,96 +133,28 @@ class Width {
     FrontBeamRow row_;
 };
 
-nlohmann::ordered_json to_json(const FrontBeamRow& row) {
-    return {{"beam", row.beam},
-            {"drop", std::isfinite(row.drop) ? nlohmann::ordered_json(row.drop) : nlohmann::ordered_json()},
-            {"scenes", row.scenes},
-            {"proven", row.proven},
-            {"best_score", row.best_score},
-            {"first_usable", row.first_usable},
-            {"usable", row.usable},
-            {"any_usable", row.any_usable},
-            {"iou", row.iou},
-            {"median_ms", row.median_ms},
-            {"p95_ms", row.p95_ms},
-            {"worst_ms", row.worst_ms}};
+const RowFields<FrontBeamRow>& width_fields() {
+    using Row = FrontBeamRow;
+    static const RowFields<Row> kFields{
+        {"beam", &Row::beam},
+        {"", [](const Row& row) { return row.beam == 0 ? "all" : std::to_string(row.beam); },
+         Shown::number("beam")},
+        {"drop", [](const Row& row) { return std::isfinite(row.drop) ? Json(row.drop) : Json(); },
+         Shown::fixed("drop", 1)},
+        {"scenes", &Row::scenes, Shown::number("scenes")},
+        {"proven", &Row::proven, Shown::percent("proven %", 2)},
+        {"best_score", &Row::best_score, Shown::percent("best score %", 2)},
+        {"first_usable", &Row::first_usable, Shown::percent("usable by score %", 2)},
+        {"usable", &Row::usable, Shown::percent("usable, judged %", 2)},
+        {"any_usable", &Row::any_usable, Shown::percent("any usable %", 2)},
+        {"iou", &Row::iou, Shown::percent("IoU %", 2)},
+        {"median_ms", &Row::median_ms, Shown::fixed("median ms", 2)},
+        {"p95_ms", &Row::p95_ms, Shown::fixed("p95 ms", 2)},
+        {"worst_ms", &Row::worst_ms, Shown::fixed("worst ms", 2)}};
+    return kFields;
 }
 
-std::string table_of(std::span<const FrontBeamRow> rows) {
-    TextTable table({{"beam"},
-                     {"drop"},
-                     {"scenes"},
-                     {"proven %"},
-                     {"best score %"},
-                     {"usable by score %"},
-                     {"usable, judged %"},
-                     {"any usable %"},
-                     {"IoU %"},
-                     {"median ms"},
-                     {"p95 ms"},
-                     {"worst ms"}});
-    for (const FrontBeamRow& row : rows) {
-        table.add({row.beam == 0 ? "all" : std::to_string(row.beam),
-                   std::isfinite(row.drop) ? fixed(row.drop, 1) : "-", std::to_string(row.scenes),
-                   percent(row.proven, 2), percent(row.best_score, 2), percent(row.first_usable, 2),
-                   percent(row.usable, 2), percent(row.any_usable, 2), percent(row.iou, 2),
-                   fixed(row.median_ms, 2), fixed(row.p95_ms, 2), fixed(row.worst_ms, 2)});
-    }
-    return table.text();
-}
-
-class FrontBeamStudy : public Study {
-  public:
-    FrontBeamStudy()
-        : Study(
-              {"front-beam",
-               "how often does the beam of front miss the lane of the highest score, and what does the judge "
-               "add to the score?",
-               "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
-               "is the widest search, except for --exhaustive. Best score: the highest of all rows was "
-               "found. "
-               "Proven: nothing was left out, so no allowed lane has a higher score. Any usable: one of the "
-               "best 20 lanes, from which the judge chooses. *.tracks.json beside the scenes has the "
-               "boundaries."}) {}
-
-    void add_options(CLI::App& command) override {
-        command.add_option("--scenes", scenes_, "*.scenes.jsonl; *.tracks.json beside it")->required();
-        command.add_option("--weights", weights_, "weights of front (JSON); those of the library without it");
-        command.add_option("--beams", options_.beams, "numbers of states kept at each level")
-            ->delimiter(',')
-            ->capture_default_str();
-        command.add_option("--reference-beam", options_.reference_beam, "beam of the last row")
-            ->capture_default_str();
-        command.add_option("--reference-drop", options_.reference_drop, "drop of the last row [score]")
-            ->capture_default_str();
-        command
-            .add_option("--exhaustive", options_.exhaustive_ms,
-                        "time limits [ms]: a row for each, by the search that leaves out nothing")
-            ->delimiter(',')
-            ->check(CLI::PositiveNumber);
-    }
-
-    StudyResult run() override {
-        options_.weights =
-            weights_.empty()
-                ? shipped_front_options().weights
-                : parsed_file(weights_, [](const std::string& text) { return parse_front_weights(text); });
-        SceneSet set;
-        set.scenes = read_scenes(scenes_);
-        const std::filesystem::path boundaries = track_boundaries_path(scenes_);
-        if (std::filesystem::exists(boundaries)) set.tracks = read_track_boundaries(boundaries);
-        const std::vector<FrontBeamRow> rows = front_beam_rows(set, options_);
-        return study_result(table_of(rows), rows, [](const FrontBeamRow& row) { return to_json(row); });
-    }
-
-  private:
-    std::string scenes_;
-    std::string weights_;
-    FrontBeamOptions options_;
-};
-
-}  // namespace
-
+/// Throws InvalidInput if a width or drop is out of range, or no scene has a ground truth.
 std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options) {
     std::vector<Width> widths;
     for (const std::size_t beam : options.beams) {
@@ -245,6 +198,52 @@ std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOp
     for (const Width& width : widths) rows.push_back(width.row());
     return rows;
 }
+
+class FrontBeamStudy : public SceneStudy {
+  public:
+    FrontBeamStudy()
+        : SceneStudy(
+              {"front-beam",
+               "how often does the beam of front miss the lane of the highest score, and what does the judge "
+               "add to the score?",
+               "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
+               "is the widest search, except for --exhaustive. Best score: the highest of all rows was "
+               "found. "
+               "Proven: nothing was left out, so no allowed lane has a higher score. Any usable: one of the "
+               "best 20 lanes, from which the judge chooses. *.tracks.json beside the scenes has the "
+               "boundaries."}) {}
+
+    void add_options(CLI::App& command) override {
+        SceneStudy::add_options(command);
+        command.add_option("--weights", weights_, "weights of front (JSON); those of the library without it");
+        command.add_option("--beams", options_.beams, "numbers of states kept at each level")
+            ->delimiter(',')
+            ->capture_default_str();
+        command.add_option("--reference-beam", options_.reference_beam, "beam of the last row")
+            ->capture_default_str();
+        command.add_option("--reference-drop", options_.reference_drop, "drop of the last row [score]")
+            ->capture_default_str();
+        command
+            .add_option("--exhaustive", options_.exhaustive_ms,
+                        "time limits [ms]: a row for each, by the search that leaves out nothing")
+            ->delimiter(',')
+            ->check(CLI::PositiveNumber);
+    }
+
+    StudyResult measure(const SceneSet& set) override {
+        options_.weights =
+            weights_.empty()
+                ? shipped_front_options().weights
+                : parsed_file(weights_, [](const std::string& text) { return parse_front_weights(text); });
+        return study_result(front_beam_rows(set, options_), width_fields());
+    }
+
+  private:
+    std::string weights_;
+    FrontBeamOptions options_;
+};
+
+}  // namespace
 
 std::unique_ptr<Study> make_front_beam_study() {
     return std::make_unique<FrontBeamStudy>();

@@ -1,16 +1,13 @@
 #include "experiments/studies/noise.hpp"
 
 #include "conelane/detectors.hpp"
-#include "conelane/invalid_input.hpp"
 #include "evaluation/world/scene_draws.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/studies/text_table.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <CLI/CLI.hpp>
@@ -19,6 +16,29 @@
 
 namespace conelane::experiments {
 namespace {
+
+struct NoiseOptions {
+    std::vector<std::string> detectors{"front", "front-warm"};
+    std::size_t cones = 16;                          ///< in each scene, all of them false
+    std::vector<double> ranges_m{20.0, 30.0, 50.0};  ///< radius of the half disc that holds them
+    std::size_t scenes = 1000;                       ///< for each range
+    double confidence = 0.3;                         ///< a lane of a higher one is claimed
+    double time_limit_ms = 1000.0;
+    std::uint64_t seed = 1;
+};
+
+/// One detector over all scenes of a range.
+struct NoiseRow {
+    std::string detector;
+    double range_m = 0.0;
+    std::size_t scenes = 0;
+    std::size_t found = 0;         ///< answers with a lane
+    std::size_t unrated = 0;       ///< of these, lanes without a confidence
+    std::size_t claimed = 0;       ///< lanes of a confidence above NoiseOptions::confidence
+    double max_confidence = 0.0;   ///< of all lanes; 0 where none has one
+    double mean_trusted_m = 0.0;   ///< over all scenes; 0 counts where there is no lane
+    std::size_t trusted_10_m = 0;  ///< lanes that are trusted for 10 m or more
+};
 
 void count(const LaneAnswer& answer, const NoiseOptions& options, NoiseRow& row) {
     constexpr double kFar_m = 10.0;
@@ -36,16 +56,46 @@ void count(const LaneAnswer& answer, const NoiseOptions& options, NoiseRow& row)
     if (answer.trusted_m.value_or(0.0) >= kFar_m) ++row.trusted_10_m;
 }
 
-nlohmann::ordered_json row_to_json(const NoiseRow& row) {
-    return {{"method", row.detector},
-            {"range", row.range_m},
-            {"scenes", row.scenes},
-            {"found", row.found},
-            {"unrated", row.unrated},
-            {"claimed", row.claimed},
-            {"max_confidence", row.max_confidence},
-            {"mean_trusted_m", row.mean_trusted_m},
-            {"trusted_10_m", row.trusted_10_m}};
+RowFields<NoiseRow> noise_fields() {
+    using Row = NoiseRow;
+    const auto share_of_scenes = [](std::size_t Row::*part) {
+        return [part](const Row& row) { return share(row.*part, row.scenes); };
+    };
+    return {{"method", &Row::detector, Shown::text("method")},
+            {"range", &Row::range_m, Shown::number("range m")},
+            {"scenes", &Row::scenes, Shown::number("scenes")},
+            {"found", &Row::found},
+            {"", share_of_scenes(&Row::found), Shown::percent("found %", 1)},
+            {"unrated", &Row::unrated},
+            {"", share_of_scenes(&Row::unrated), Shown::percent("unrated %", 1)},
+            {"claimed", &Row::claimed},
+            {"", share_of_scenes(&Row::claimed), Shown::percent("claimed %", 1)},
+            {"max_confidence", &Row::max_confidence, Shown::fixed("max conf.", 2)},
+            {"mean_trusted_m", &Row::mean_trusted_m, Shown::fixed("trusted m", 2)},
+            {"trusted_10_m", &Row::trusted_10_m},
+            {"", share_of_scenes(&Row::trusted_10_m), Shown::percent("10 m %", 1)}};
+}
+
+/// Detectors in their order, each with the ranges in theirs. Every scene is one of its own: detectors that
+/// remember their last lane forget it. Throws InvalidInput where a detector is unknown, and
+/// std::runtime_error where an answer has status error.
+std::vector<NoiseRow> noise_rows(const NoiseOptions& options) {
+    Progress progress("noise", options.detectors.size() * options.ranges_m.size() * options.scenes);
+    std::vector<NoiseRow> rows;
+    for (const std::string& name : options.detectors) {
+        const std::unique_ptr<LaneDetector> detector = make_detector(name);
+        for (const double range_m : options.ranges_m) {
+            NoiseRow row{.detector = name, .range_m = range_m, .scenes = options.scenes};
+            for (std::size_t index = 0; index < options.scenes; ++index) {
+                detector->reset();
+                const Scene scene = noise_scene(options.cones, range_m, index, options.seed);
+                count(detector->detect(scene, {options.time_limit_ms}), options, row);
+                progress.advance();
+            }
+            rows.push_back(std::move(row));
+        }
+    }
+    return rows;
 }
 
 class NoiseStudy : public Study {
@@ -76,25 +126,7 @@ class NoiseStudy : public Study {
         command.add_option("--seed", options_.seed, "of the scenes")->capture_default_str();
     }
 
-    StudyResult run() override {
-        const std::vector<NoiseRow> rows = noise_rows(options_);
-        TextTable table({{"method", true},
-                         {"range m"},
-                         {"scenes"},
-                         {"found %"},
-                         {"unrated %"},
-                         {"claimed %"},
-                         {"max conf."},
-                         {"trusted m"},
-                         {"10 m %"}});
-        for (const NoiseRow& row : rows) {
-            table.add({row.detector, fmt::format("{:g}", row.range_m), std::to_string(row.scenes),
-                       percent(share(row.found, row.scenes), 1), percent(share(row.unrated, row.scenes), 1),
-                       percent(share(row.claimed, row.scenes), 1), fixed(row.max_confidence, 2),
-                       fixed(row.mean_trusted_m, 2), percent(share(row.trusted_10_m, row.scenes), 1)});
-        }
-        return study_result(table.text(), rows, [](const NoiseRow& row) { return row_to_json(row); });
-    }
+    StudyResult run() override { return study_result(noise_rows(options_), noise_fields()); }
 
   private:
     NoiseOptions options_;
@@ -102,15 +134,15 @@ class NoiseStudy : public Study {
 
 }  // namespace
 
-Scene noise_scene(const NoiseOptions& options, double range_m, std::size_t index) {
-    const std::string id = fmt::format("noise/{}/range_{}/{:04}", options.cones, range_m, index);
-    SceneGenerator random = generator_for(fmt::format("{}/{}", id, options.seed));
+Scene noise_scene(std::size_t cones, double range_m, std::size_t index, std::uint64_t seed) {
+    const std::string id = fmt::format("noise/{}/range_{}/{:04}", cones, range_m, index);
+    SceneGenerator random = generator_for(fmt::format("{}/{}", id, seed));
     boost::random::uniform_real_distribution<double> ahead_m(0.0, range_m);
     boost::random::uniform_real_distribution<double> left_m(-range_m, range_m);
     Scene scene;
     scene.id = id;
     const HalfDisc view{scene.pose.position, scene.pose.heading(), range_m};
-    while (scene.cones.size() < options.cones) {
+    while (scene.cones.size() < cones) {
         const double ahead = ahead_m(random);
         const double left = left_m(random);
         Cone cone;
@@ -119,28 +151,6 @@ Scene noise_scene(const NoiseOptions& options, double range_m, std::size_t index
         if (view.contains(cone.position)) scene.cones.push_back(cone);
     }
     return scene;
-}
-
-std::vector<NoiseRow> noise_rows(const NoiseOptions& options) {
-    for (const double range_m : options.ranges_m) {
-        if (!(range_m > 0.0 && std::isfinite(range_m))) throw InvalidInput("--range", "must be above 0");
-    }
-    Progress progress("noise", options.detectors.size() * options.ranges_m.size() * options.scenes);
-    std::vector<NoiseRow> rows;
-    for (const std::string& name : options.detectors) {
-        const std::unique_ptr<LaneDetector> detector = make_detector(name);
-        for (const double range_m : options.ranges_m) {
-            NoiseRow row{.detector = name, .range_m = range_m, .scenes = options.scenes};
-            for (std::size_t index = 0; index < options.scenes; ++index) {
-                detector->reset();
-                const Scene scene = noise_scene(options, range_m, index);
-                count(detector->detect(scene, {options.time_limit_ms}), options, row);
-                progress.advance();
-            }
-            rows.push_back(std::move(row));
-        }
-    }
-    return rows;
 }
 
 std::unique_ptr<Study> make_noise_study() {

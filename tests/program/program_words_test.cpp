@@ -62,7 +62,7 @@ TEST_F(Words, AFolderThatIsMissingIsNamed) {
 }
 
 TEST_F(Words, AnUnknownCommandListsTheCommands) {
-    expect_refused("study nope", {"study: there is no 'nope'", "optimality", "front-beam", "memory"});
+    expect_refused("study nope", {"study: there is no 'nope'", "optimality", "front-beam", "noise"});
     expect_refused("study nope --scenes s.scenes.jsonl --out x", {"study: there is no 'nope'", "optimality"});
     expect_refused("nope", {"there is no 'nope'", "compare", "solve"});
     expect_refused("train fornt --tracks generated:circle --out w", {"train: there is no 'fornt'", "front"});

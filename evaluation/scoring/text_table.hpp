@@ -3,9 +3,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-namespace conelane::experiments {
+namespace conelane {
 
 /// A table for a terminal: a line of titles, then a line for each row; a column is as wide as its widest
 /// cell.
@@ -15,16 +16,20 @@ class TextTable {
         std::string title;
         bool is_text = false;  ///< aligned to the left; numbers are aligned to the right
     };
-    explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+    /// `gap`: number of blanks between two columns.
+    explicit TextTable(std::vector<Column> columns, std::size_t gap = 1)
+        : columns_(std::move(columns)), gap_(gap) {}
 
     /// Precondition: as many cells as columns.
     void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
 
-    /// Each line ends with a line feed.
+    /// The titles, then the rows; each line ends with a line feed.
+    [[nodiscard]] std::vector<std::string> lines() const;
     [[nodiscard]] std::string text() const;
 
   private:
     std::vector<Column> columns_;
+    std::size_t gap_;
     std::vector<std::vector<std::string>> rows_;
 };
 
@@ -37,4 +42,4 @@ class TextTable {
 /// part / whole; nothing if the whole is 0.
 [[nodiscard]] std::optional<double> share(std::size_t part, std::size_t whole);
 
-}  // namespace conelane::experiments
+}  // namespace conelane
