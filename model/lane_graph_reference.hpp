@@ -156,7 +156,11 @@ class LaneGraphReference {
     static Real tie() { return Real(1e-9L); }
     static Real dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y; }
     static Real wedge(const Vector& a, const Vector& b) { return a.x * b.y - a.y * b.x; }
-    static Real size(const Real& a) { return a < 0 ? Real(-a) : a; }
+    /** Zero has no sign here: atan2 of -0 and a negative number would be -pi instead of pi. */
+    static Real size(const Real& a) {
+        if (a == 0) return Real(0);
+        return a < 0 ? Real(-a) : a;
+    }
     static Real square(const Real& a) { return a * a; }
     static Real fourth(const Real& a) { return square(square(a)); }
     static Real length(const Vector& a) {

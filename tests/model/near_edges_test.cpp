@@ -16,7 +16,7 @@ class RandomPoints {
     explicit RandomPoints(std::uint64_t seed) : random_(seed) {}
 
     /// On a grid, some segments touch, are parallel, overlap, or have no length.
-    Point on_grid() { return {grid_(random_), grid_(random_)}; }
+    Point on_grid() { return Point(grid_(random_), grid_(random_)); }
     Point anywhere() { return {anywhere_(random_), anywhere_(random_)}; }
 
   private:

@@ -185,7 +185,9 @@ TEST(ClcDetector, AnExactlySymmetricSceneIsSearchedAlikeFromBothSides) {
 }
 
 Lanes candidates(const Scene& scene, const ClcOptions& options) {
-    const LaneAnswer answer = detect(scene, options, {.keep_candidates = true});
+    DetectionLimits limits = tests::kNoTimeLimit;
+    limits.keep_candidates = true;
+    const LaneAnswer answer = detect(scene, options, limits);
     EXPECT_LE(answer.enumeration->iterations, options.iteration_limit);
     Lanes lanes;
     for (const LaneCandidate& candidate : answer.enumeration->candidates) {
@@ -355,7 +357,7 @@ TEST(ClcDetector, AFoundLaneTellsWhetherALimitCutTheSearch) {
     EXPECT_EQ(few.stopped_by, StopReason::iterations);
     options.iteration_limit = std::numeric_limits<std::int64_t>::max();
     const LaneAnswer late =
-        make_clc_detector(options)->detect(tests::strewn_scene(300, 30.0, 16.0), {.time_limit_ms = 30.0});
+        make_clc_detector(options)->detect(tests::strewn_scene(300, 30.0, 16.0), {.time_limit_ms = 300.0});
     EXPECT_EQ(late.status, LaneStatus::found);
     EXPECT_EQ(late.stopped_by, StopReason::time);
 }

@@ -30,13 +30,13 @@ FrontSearchOptions exhaustive() {
 }
 
 /// A search of the scene, run to its end unless told otherwise.
-struct Run {
+struct Searched {
     FrontCost cost;
     FrontSearch search;
     SearchBudget unlimited;
 
-    Run(const Scene& scene, const FrontWeights& weights, const FrontSearchOptions& options,
-        bool to_the_end = true)
+    Searched(const Scene& scene, const FrontWeights& weights, const FrontSearchOptions& options,
+             bool to_the_end = true)
         : cost(weights) {
         search.begin(scene, cost, options);
         if (to_the_end) search.run(unlimited);
@@ -119,7 +119,7 @@ TEST(FrontSearch, MeetsEveryLaneOnceAndFindsTheBest) {
         const Enumeration all(scene, weights, {});
         EXPECT_EQ(all.met, all.lanes.size()) << "a lane has one derivation";
 
-        const Run run(scene, weights, exhaustive());
+        const Searched run(scene, weights, exhaustive());
         const FrontSearch& search = run.search;
         EXPECT_FALSE(search.left_out());
         ASSERT_EQ(search.finished().size(), all.lanes.size());
@@ -140,7 +140,7 @@ TEST(FrontSearch, MeetsEveryLaneOnceAndFindsTheBest) {
 TEST(FrontSearch, ALevelHoldsNoMoreThanTheBeam) {
     FrontSearchOptions options = exhaustive();
     options.beam_width = 2;
-    Run run(straight_front_scene(4), random_front_weights(3), options, false);
+    Searched run(straight_front_scene(4), random_front_weights(3), options, false);
     FrontSearch& search = run.search;
     std::size_t full = 0;
     while (search.advance(run.unlimited)) {
@@ -157,7 +157,7 @@ TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
     FrontSearchOptions options = exhaustive();
     options.beam_width = 4;
     options.far_m = 5.0;
-    Run run(straight_front_scene(5), random_front_weights(3), options, false);
+    Searched run(straight_front_scene(5), random_front_weights(3), options, false);
     std::size_t near = 0;
     std::size_t far = 0;
     while (run.search.advance(run.unlimited)) {
@@ -170,7 +170,7 @@ TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
 
 /// The margin of the best move is its lead over the second one; that of any other is its lag behind the best.
 TEST(FrontSearch, OneMoveOfAStateHasAMargin) {
-    const Run run(straight_front_scene(3), random_front_weights(3), exhaustive());
+    const Searched run(straight_front_scene(3), random_front_weights(3), exhaustive());
     const FrontSearch& search = run.search;
     std::map<std::size_t, int> best_moves;
     for (std::size_t n = 0; n < search.nodes(); ++n) {
@@ -190,7 +190,7 @@ TEST(FrontSearch, TheBeamIsNeverBetterAndMostlyAsGood) {
         const Scene scene = tests::random_scene(seed, 10);
         const FrontOptions shipped = shipped_front_options();
         const auto best = [&](const FrontSearchOptions& options) {
-            Run run(scene, shipped.weights, options);
+            Searched run(scene, shipped.weights, options);
             run.search.sort_finished(1);
             return run.search.finished().empty() ? -1e9 : run.search.finished().front().score;
         };
