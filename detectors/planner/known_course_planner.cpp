@@ -135,7 +135,7 @@ DrivablePoint in_map(DrivablePoint point, const Registration& registration, doub
     return point;
 }
 
-/// A cone of a frame or more on a boundary beside the exit.
+/// A cone that stands on a boundary of the lane.
 struct OnBoundary {
     double x_m;
     bool left;

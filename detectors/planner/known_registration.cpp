@@ -22,7 +22,7 @@ constexpr double kMinMarginShare = 0.2;
 constexpr double kDistinct_m = 0.7;  ///< registrations that differ by more, at the car
 constexpr double kDistinct_rad = 0.09;
 
-// Cones of the last frames, and what a frame looks at.
+// What is seen.
 constexpr double kSameCone_m = 0.45;
 constexpr int kAveragedSightings = 20;
 constexpr double kForgotten_s = 3.0;
