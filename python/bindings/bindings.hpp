@@ -130,9 +130,9 @@ class Class : public py::class_<Object, Options...> {
     /// What there is of cones; `steps` lead to them.
     template <typename... Steps>
     Class& cones(Steps... steps) {
-        return get("cones", "(N, 2) ndarray of float64: positions [m]", steps..., positions)
-            .get("ids", "(N,) ndarray of int64: ids of the cones", steps..., ids)
-            .get("colors", "(N,) ndarray of uint8: codes, see `Color`", steps..., colors);
+        return get("cones", "NDArray[float64]: (N, 2), positions [m]", steps..., positions)
+            .get("ids", "NDArray[int64]: (N,), ids of the cones", steps..., ids)
+            .get("colors", "NDArray[uint8]: (N,), codes, see `Color`", steps..., colors);
     }
     template <typename Function>
     Class& method(const char* doc, Function function) {
