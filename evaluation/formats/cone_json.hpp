@@ -26,16 +26,14 @@ struct ConeUncertainty {
     static void put(nlohmann::ordered_json& json, const Cone& cone, const std::string& place);
 };
 
-inline constexpr std::tuple kConePlace{Field{"x", [](auto& placed) -> auto& {return placed.position.x();
-}  // namespace conelane
-}
-, Field {
-    "y", [](auto& placed) -> auto& {
-        return placed.position.y();
-    }
-}
-}
-;
+struct ConeX {
+    decltype(auto) operator()(auto& placed) const { return placed.position.x(); }
+};
+struct ConeY {
+    decltype(auto) operator()(auto& placed) const { return placed.position.y(); }
+};
+inline constexpr std::tuple kConePlace{Field{"x", ConeX{}}, Field{"y", ConeY{}}};
+
 /// All but the id.
 inline constexpr std::tuple kSeenCone = std::tuple_cat(
     kConePlace,
