@@ -321,7 +321,7 @@ OptionFields draw_fields(DrawnTrainingOptions& options, bool with_noise) {
 
 OptionFields run_fields(DrawnTrainingOptions& options, const char* report_option) {
     return {{report_option, "", &options.report_every, kCount,
-             "steps between two lines of output, with figures of the tracks held out"},
+             "steps between two lines of output, and figures if tracks are held out"},
             {"--checkpoint", "", &options.checkpoint, kAny,
              "file of the training's state, from which a stopped training resumes"},
             {"--checkpoint-every", "", &options.checkpoint_every, kCount, "steps between two writes of it"},

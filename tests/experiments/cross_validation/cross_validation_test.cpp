@@ -59,8 +59,8 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 find_method(detector).learned_maker(path("cv/folds/" + fold), options);
             EXPECT_EQ(maker(scenes[i].track)->answer(scenes[i].scene).answer.lane, lanes[i].answer.lane)
                 << scenes[i].scene.id;
-            if (lanes[i].answer.status == LaneStatus::found)
-                EXPECT_TRUE(lanes[i].answer.trusted_m) << "checked to be drivable, as in a comparison";
+            EXPECT_EQ(lanes[i].answer.status == LaneStatus::found, lanes[i].answer.trusted_m.has_value())
+                << "checked to be drivable, as in a comparison";
         }
     }
 }
