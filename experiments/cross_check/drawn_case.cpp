@@ -61,7 +61,8 @@ std::size_t cone_count(Draw& draw) {
 void make_lane(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     Scene& scene = drawn.scene;
     scene.pose.yaw_rad = draw.integer(-3141, 3141) / 1000.0;
-    scene.pose.position = {draw.integer(-50, 50), draw.integer(-50, 50)};
+    scene.pose.position = {static_cast<double>(draw.integer(-50, 50)),
+                           static_cast<double>(draw.integer(-50, 50))};
     const Point ahead = scene.pose.heading();
     const Point left(-ahead.y(), ahead.x());
     const double curvature = draw.real(-0.08, 0.08);

@@ -77,7 +77,7 @@ std::string backend_table(std::span<const SolveRow> rows) {
     };
     const auto latency_ms = of_original(&Row::latency_ms);
     const RowFields<RowGroup<Row>> fields{
-        {"", first_of([](const Row& row) { return size_name(row.size); }), Shown::number("n")},
+        {"", first_of(&Row::size_text), Shown::number("n")},
         {"", first_of([](const Row& row) { return row.backend.label(); }), Shown::text("backend")},
         {"", count_of(original), Shown::number("scenes")},
         {"", status(&Row::is_optimal), Shown::number("optimal")},

@@ -70,7 +70,7 @@ class FeaturesStudy : public SolveStudy {
         using Problem = InstanceFeatures::Problem;
         using Relaxation = InstanceFeatures::Relaxation;
         const RowFields<Group> medians{
-            {"", first_of(&Row::size), Shown::number("n")},
+            {"", first_of(&Row::size_text), Shown::number("n")},
             {"", &Group::size, Shown::number("scenes")},
             {"", problem(&Problem::edges), Shown::fixed("edges", 0)},
             {"", problem(&Problem::edge_density), Shown::percent("density %", 1)},

@@ -75,7 +75,8 @@ class FormulationsStudy : public SolveStudy {
         using Group = RowGroup<Row>;
         const auto formulation = [](const Row& row) { return row.backend.formulation; };
         const RowFields<Group> fields{
-            {"cones", first_of(&Row::size), Shown::number("n")},
+            {"cones", first_of(&Row::size)},
+            {"", first_of(&Row::size_text), Shown::number("n")},
             {"formulation", first_of(formulation), Shown::text("form")},
             {"solver", first_of([](const Row& row) { return row.backend.solver; }), Shown::text("solver")},
             {"scenes", &Group::size, Shown::number("scenes")},

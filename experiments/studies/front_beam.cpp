@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -37,40 +39,37 @@ struct FrontBeamOptions {
     std::vector<double> exhaustive_ms;
 };
 
-/// One width over all scenes with a ground truth. Shares are of these.
-struct FrontBeamRow {
-    std::size_t beam = 0;  ///< 0: no limit
-    double drop = 0.0;     ///< infinity: none
-    std::size_t scenes = 0;
-    double proven = 0.0;        ///< share whose search left nothing out: no lane has a higher score
-    double best_score = 0.0;    ///< share with a lane of the highest score that any row has met
-    double first_usable = 0.0;  ///< by score alone
-    double usable = 0.0;        ///< as the judge orders the best lanes
-    double any_usable = 0.0;    ///< share with a usable lane among those judged
-    double iou = 0.0;           ///< mean, of the judge's first lane
-    double median_ms = 0.0;     ///< of search and judge together
-    double p95_ms = 0.0;
-    double worst_ms = 0.0;
+/// One scene by one width.
+struct WidthRow {
+    std::size_t width = 0;                                    ///< its place
+    std::size_t beam = 0;                                     ///< 0: no limit
+    double drop = 0.0;                                        ///< infinity: none
+    double score = -std::numeric_limits<double>::infinity();  ///< the highest of a lane
+    bool is_proven = false;     ///< the search left nothing out: no lane has a higher score
+    bool is_best = false;       ///< no other width met a higher score
+    bool first_usable = false;  ///< by score alone
+    bool usable = false;        ///< as the judge orders the best lanes
+    bool any_usable = false;    ///< of the lanes judged
+    double iou = 0.0;           ///< of the judge's first lane
+    double time_ms = 0.0;       ///< of search and judge together
 };
 
-/// One width, scene by scene.
 class Width {
   public:
     Width(const FrontWeights& weights, const FrontSearchOptions& search,
           double limit_ms = std::numeric_limits<double>::infinity())
-        : cost_(weights), judge_(weights), options_(search), limit_ms_(limit_ms) {
-        row_.beam = search.beam_width == kAll ? 0 : search.beam_width;
-        row_.drop = search.drop;
-    }
+        : cost_(weights), judge_(weights), options_(search), limit_ms_(limit_ms) {}
 
-    /// The highest score of a lane; minus infinity if there is none.
-    double drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
+    WidthRow drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
+        WidthRow row;
+        row.beam = options_.beam_width == kAll ? 0 : options_.beam_width;
+        row.drop = options_.drop;
         const Stopwatch watch;
         SearchBudget budget;
         budget.deadline = Deadline(limit_ms_);
         search_.begin(scene.scene, cost_, options_);
         search_.run(budget);
-        if (!budget.stopped_by && !search_.left_out()) row_.proven += 1.0;
+        row.is_proven = !budget.stopped_by && !search_.left_out();
         search_.sort_finished(FrontJudge::kContenders);
         contenders_.clear();
         for (const FrontSearch::Finished& lane : search_.finished()) {
@@ -78,33 +77,17 @@ class Width {
             contenders_.push_back({lane.parent, lane.score});
         }
         if (!contenders_.empty()) judge_.compare(search_, contenders_);
-        times_ms_.push_back(watch.elapsed_ms());
-        ++row_.scenes;
-        if (contenders_.empty()) return -std::numeric_limits<double>::infinity();
-        bool any = false;
+        row.time_ms = watch.elapsed_ms();
         for (std::size_t place = 0; place < contenders_.size(); ++place) {
             const SceneScore scored = scored_lane(scene, contenders_[place].node, boundaries);
             const bool usable = scored.usable().value_or(false);
-            any = any || usable;
-            if (place == 0 && usable) row_.first_usable += 1.0;
+            row.any_usable = row.any_usable || usable;
+            if (place == 0) row.first_usable = usable;
+            if (place == 0) row.score = contenders_.front().score;
             if (place != judge_.order().front()) continue;
-            if (usable) row_.usable += 1.0;
-            row_.iou += scored.iou.value_or(0.0);
+            row.usable = usable;
+            row.iou = scored.iou.value_or(0.0);
         }
-        if (any) row_.any_usable += 1.0;
-        return contenders_.front().score;
-    }
-
-    void add_best() { row_.best_score += 1.0; }
-
-    [[nodiscard]] FrontBeamRow row() const {
-        FrontBeamRow row = row_;
-        for (double* share :
-             {&row.proven, &row.best_score, &row.first_usable, &row.usable, &row.any_usable, &row.iou})
-            *share /= static_cast<double>(row.scenes);
-        row.median_ms = median(times_ms_);
-        row.p95_ms = quantile(times_ms_, 0.95);
-        row.worst_ms = quantile(times_ms_, 1.0);
         return row;
     }
 
@@ -129,33 +112,31 @@ class Width {
     FrontSearch search_;
     std::vector<FrontJudge::Contender> contenders_;
     std::array<std::vector<Vertex>, 2> cones_;
-    std::vector<double> times_ms_;
-    FrontBeamRow row_;
 };
 
-const RowFields<FrontBeamRow>& width_fields() {
-    using Row = FrontBeamRow;
-    static const RowFields<Row> kFields{
-        {"beam", &Row::beam},
-        {"", [](const Row& row) { return row.beam == 0 ? "all" : std::to_string(row.beam); },
+/// Shares are of all scenes with a ground truth.
+RowFields<RowGroup<WidthRow>> width_fields() {
+    using Row = WidthRow;
+    return {
+        {"beam", first_of(&Row::beam)},
+        {"", first_of([](const Row& row) { return row.beam == 0 ? "all" : std::to_string(row.beam); }),
          Shown::number("beam")},
-        {"drop", [](const Row& row) { return std::isfinite(row.drop) ? Json(row.drop) : Json(); },
+        {"drop", first_of([](const Row& row) { return std::isfinite(row.drop) ? Json(row.drop) : Json(); }),
          Shown::fixed("drop", 1)},
-        {"scenes", &Row::scenes, Shown::number("scenes")},
-        {"proven", &Row::proven, Shown::percent("proven %", 2)},
-        {"best_score", &Row::best_score, Shown::percent("best score %", 2)},
-        {"first_usable", &Row::first_usable, Shown::percent("usable by score %", 2)},
-        {"usable", &Row::usable, Shown::percent("usable, judged %", 2)},
-        {"any_usable", &Row::any_usable, Shown::percent("any usable %", 2)},
-        {"iou", &Row::iou, Shown::percent("IoU %", 2)},
-        {"median_ms", &Row::median_ms, Shown::fixed("median ms", 2)},
-        {"p95_ms", &Row::p95_ms, Shown::fixed("p95 ms", 2)},
-        {"worst_ms", &Row::worst_ms, Shown::fixed("worst ms", 2)}};
-    return kFields;
+        {"scenes", &RowGroup<Row>::size, Shown::number("scenes")},
+        {"proven", share_of(&Row::is_proven), Shown::percent("proven %", 2)},
+        {"best_score", share_of(&Row::is_best), Shown::percent("best score %", 2)},
+        {"first_usable", share_of(&Row::first_usable), Shown::percent("usable by score %", 2)},
+        {"usable", share_of(&Row::usable), Shown::percent("usable, judged %", 2)},
+        {"any_usable", share_of(&Row::any_usable), Shown::percent("any usable %", 2)},
+        {"iou", mean_of(&Row::iou), Shown::percent("IoU %", 2)},
+        {"median_ms", median_of(&Row::time_ms), Shown::fixed("median ms", 2)},
+        {"p95_ms", quantile_of(&Row::time_ms, 0.95), Shown::fixed("p95 ms", 2)},
+        {"worst_ms", quantile_of(&Row::time_ms, 1.0), Shown::fixed("worst ms", 2)}};
 }
 
 /// Throws InvalidInput if a width or drop is out of range, or no scene has a ground truth.
-std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options) {
+std::vector<WidthRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options) {
     std::vector<Width> widths;
     for (const std::size_t beam : options.beams) {
         FrontSearchOptions search;
@@ -177,25 +158,23 @@ std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOp
         widths.emplace_back(options.weights, all, limit_ms);
     }
 
-    std::vector<const AnnotatedScene*> scenes;
+    Progress progress("scenes", set.scenes.size());
+    std::vector<WidthRow> rows;
     for (const AnnotatedScene& scene : set.scenes) {
-        if (counts(scene)) scenes.push_back(&scene);
-    }
-    if (scenes.empty()) throw InvalidInput("scenes", "none has a ground truth");
-    Progress progress("scenes", scenes.size());
-    for (const AnnotatedScene* scene : scenes) {
-        const auto track = set.tracks.find(scene->track);
-        const TrackBoundaries* boundaries = track == set.tracks.end() ? nullptr : &track->second;
-        std::vector<double> best;
-        for (Width& width : widths) best.push_back(width.drive(*scene, boundaries));
-        const double highest = std::ranges::max(best);
-        for (std::size_t i = 0; i < widths.size(); ++i) {
-            if (best[i] >= highest - kSameScore) widths[i].add_best();
-        }
         progress.advance();
+        if (!counts(scene)) continue;
+        const auto track = set.tracks.find(scene.track);
+        const TrackBoundaries* boundaries = track == set.tracks.end() ? nullptr : &track->second;
+        double highest = -std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < widths.size(); ++k) {
+            WidthRow& row = rows.emplace_back(widths[k].drive(scene, boundaries));
+            row.width = k;
+            highest = std::max(highest, row.score);
+        }
+        for (WidthRow& row : std::span(rows).last(widths.size()))
+            row.is_best = row.score >= highest - kSameScore;
     }
-    std::vector<FrontBeamRow> rows;
-    for (const Width& width : widths) rows.push_back(width.row());
+    if (rows.empty()) throw InvalidInput("scenes", "none has a ground truth");
     return rows;
 }
 
@@ -235,7 +214,8 @@ class FrontBeamStudy : public SceneStudy {
             weights_.empty()
                 ? shipped_front_options().weights
                 : parsed_file(weights_, [](const std::string& text) { return parse_front_weights(text); });
-        return study_result(front_beam_rows(set, options_), width_fields());
+        const std::vector<WidthRow> rows = front_beam_rows(set, options_);
+        return study_result(groups_of<WidthRow>(rows, std::mem_fn(&WidthRow::width)), width_fields());
     }
 
   private:

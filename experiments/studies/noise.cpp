@@ -7,8 +7,8 @@
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 
-#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
@@ -27,53 +27,38 @@ struct NoiseOptions {
     std::uint64_t seed = 1;
 };
 
-/// One detector over all scenes of a range.
+/// One answer.
 struct NoiseRow {
     std::string detector;
     double range_m = 0.0;
-    std::size_t scenes = 0;
-    std::size_t found = 0;         ///< answers with a lane
-    std::size_t unrated = 0;       ///< of these, lanes without a confidence
-    std::size_t claimed = 0;       ///< lanes of a confidence above NoiseOptions::confidence
-    double max_confidence = 0.0;   ///< of all lanes; 0 where none has one
-    double mean_trusted_m = 0.0;   ///< over all scenes; 0 counts where there is no lane
-    std::size_t trusted_10_m = 0;  ///< lanes that are trusted for 10 m or more
+    bool found = false;
+    std::optional<double> confidence = {};  ///< of a lane
+    bool claimed = false;                   ///< its confidence is above NoiseOptions::confidence
+    double trusted_m = 0.0;                 ///< 0 where there is no lane
+
+    [[nodiscard]] bool is_unrated() const { return found && !confidence; }
+    [[nodiscard]] bool is_trusted_10_m() const { return trusted_m >= 10.0; }
 };
 
-void count(const LaneAnswer& answer, const NoiseOptions& options, NoiseRow& row) {
-    constexpr double kFar_m = 10.0;
-    if (answer.status == LaneStatus::error)
-        throw std::runtime_error(fmt::format("{}: {}", row.detector, answer.message));
-    if (answer.status != LaneStatus::found) return;
-    ++row.found;
-    if (answer.confidence) {
-        row.max_confidence = std::max(row.max_confidence, *answer.confidence);
-        if (*answer.confidence > options.confidence) ++row.claimed;
-    } else {
-        ++row.unrated;
-    }
-    row.mean_trusted_m += answer.trusted_m.value_or(0.0) / static_cast<double>(row.scenes);
-    if (answer.trusted_m.value_or(0.0) >= kFar_m) ++row.trusted_10_m;
-}
-
-RowFields<NoiseRow> noise_fields() {
+RowFields<RowGroup<NoiseRow>> noise_fields() {
     using Row = NoiseRow;
-    const auto share_of_scenes = [](std::size_t Row::*part) {
-        return [part](const Row& row) { return share(row.*part, row.scenes); };
-    };
-    return {{"method", &Row::detector, Shown::text("method")},
-            {"range", &Row::range_m, Shown::number("range m")},
-            {"scenes", &Row::scenes, Shown::number("scenes")},
-            {"found", &Row::found},
-            {"", share_of_scenes(&Row::found), Shown::percent("found %", 1)},
-            {"unrated", &Row::unrated},
-            {"", share_of_scenes(&Row::unrated), Shown::percent("unrated %", 1)},
-            {"claimed", &Row::claimed},
-            {"", share_of_scenes(&Row::claimed), Shown::percent("claimed %", 1)},
-            {"max_confidence", &Row::max_confidence, Shown::fixed("max conf.", 2)},
-            {"mean_trusted_m", &Row::mean_trusted_m, Shown::fixed("trusted m", 2)},
-            {"trusted_10_m", &Row::trusted_10_m},
-            {"", share_of_scenes(&Row::trusted_10_m), Shown::percent("10 m %", 1)}};
+    return {{"method", first_of(&Row::detector), Shown::text("method")},
+            {"range", first_of(&Row::range_m), Shown::number("range m")},
+            {"scenes", &RowGroup<Row>::size, Shown::number("scenes")},
+            {"found", count_of(&Row::found)},
+            {"", share_of(&Row::found), Shown::percent("found %", 1)},
+            {"unrated", count_of(&Row::is_unrated)},
+            {"", share_of(&Row::is_unrated), Shown::percent("unrated %", 1)},
+            {"claimed", count_of(&Row::claimed)},
+            {"", share_of(&Row::claimed), Shown::percent("claimed %", 1)},
+            {"max_confidence",
+             [](const RowGroup<Row>& group) {
+                 return group.sample(&Row::confidence).quantile(1.0).value_or(0.0);
+             },
+             Shown::fixed("max conf.", 2)},
+            {"mean_trusted_m", mean_of(&Row::trusted_m), Shown::fixed("trusted m", 2)},
+            {"trusted_10_m", count_of(&Row::is_trusted_10_m)},
+            {"", share_of(&Row::is_trusted_10_m), Shown::percent("10 m %", 1)}};
 }
 
 /// Detectors in their order, each with the ranges in theirs. Every scene is one of its own: detectors that
@@ -85,14 +70,20 @@ std::vector<NoiseRow> noise_rows(const NoiseOptions& options) {
     for (const std::string& name : options.detectors) {
         const std::unique_ptr<LaneDetector> detector = make_detector(name);
         for (const double range_m : options.ranges_m) {
-            NoiseRow row{.detector = name, .range_m = range_m, .scenes = options.scenes};
             for (std::size_t index = 0; index < options.scenes; ++index) {
                 detector->reset();
                 const Scene scene = noise_scene(options.cones, range_m, index, options.seed);
-                count(detector->detect(scene, {options.time_limit_ms}), options, row);
+                const LaneAnswer answer = detector->detect(scene, {options.time_limit_ms});
                 progress.advance();
+                if (answer.status == LaneStatus::error)
+                    throw std::runtime_error(fmt::format("{}: {}", name, answer.message));
+                NoiseRow& row = rows.emplace_back(NoiseRow{name, range_m});
+                if (answer.status != LaneStatus::found) continue;
+                row.found = true;
+                row.confidence = answer.confidence;
+                row.claimed = answer.confidence.value_or(0.0) > options.confidence;
+                row.trusted_m = answer.trusted_m.value_or(0.0);
             }
-            rows.push_back(std::move(row));
         }
     }
     return rows;
@@ -126,7 +117,11 @@ class NoiseStudy : public Study {
         command.add_option("--seed", options_.seed, "of the scenes")->capture_default_str();
     }
 
-    StudyResult run() override { return study_result(noise_rows(options_), noise_fields()); }
+    StudyResult run() override {
+        const std::vector<NoiseRow> rows = noise_rows(options_);
+        const auto key_of = [](const NoiseRow& row) { return std::pair(row.detector, row.range_m); };
+        return study_result(groups_of<NoiseRow>(rows, key_of), noise_fields());
+    }
 
   private:
     NoiseOptions options_;

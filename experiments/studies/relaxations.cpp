@@ -97,7 +97,8 @@ class RelaxationsStudy : public SolveStudy {
         };
         const auto solver = [](const Row& row) { return row.backend.solver; };
         const RowFields<Group> fields{
-            {"cones", first_of(&Row::size), Shown::number("n")},
+            {"cones", first_of(&Row::size)},
+            {"", first_of(&Row::size_text), Shown::number("n")},
             {"solver", first_of(solver), Shown::text("solver")},
             {"scenes", &Group::size, Shown::number("scenes")},
             {"feasible", count_of(&Row::least), Shown::number("feasible")},

@@ -79,6 +79,7 @@ struct SolveRow {
     bool refuted = false;
     std::vector<Knowledge> steps = {};  ///< by the limits for the gap, and at the end
 
+    [[nodiscard]] std::string size_text() const { return size_name(size); }
     /// The optimum, or that there is no lane graph.
     [[nodiscard]] bool is_proven() const {
         return status == SolveStatus::optimal || status == SolveStatus::infeasible;

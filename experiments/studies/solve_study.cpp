@@ -22,6 +22,9 @@ void SolveStudy::add_options(CLI::App& command) {
         command
             .add_option("--sizes", sizes_, "cones of a scene, the nearest ahead; `all` for all visible cones")
             ->delimiter(',')
+            ->check([](const std::string& size) {
+                return size == "all" ? std::string() : whole_number(1, kMaxCones)(size);
+            })
             ->capture_default_str();
     }
     add_limit_option(command, solves_.limit, "scenes of each size at most, evenly spread");
