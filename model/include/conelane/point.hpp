@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <type_traits>
 
 namespace conelane {
 
@@ -13,10 +12,6 @@ class Point {
   public:
     constexpr Point() = default;  ///< 0, 0
     constexpr Point(double x, double y) : x_m_(x), y_m_(y) {}
-    /// The same from whole numbers, in braces too.
-    template <typename X, typename Y>
-    requires(std::is_arithmetic_v<X>&& std::is_arithmetic_v<Y>) constexpr Point(X x, Y y)
-        : x_m_(static_cast<double>(x)), y_m_(static_cast<double>(y)) {}
     template <typename Vector>
     requires requires(const Vector& vector) {
         { vector.x() } -> std::convertible_to<double>;
