@@ -46,16 +46,15 @@ function(conelane_compile_quickly target level)
     endif()
 endfunction()
 
-# `conelane_precompile(TARGET)`: what nearly every file of the core includes, compiled once for all of them. Reading Eigen takes
-# three of the four seconds of a usual file. With precompiled headers GCC 12 sees bounds broken in inlined concatenations of
-# strings: .ci/compilers does without, and has these warnings.
+# `conelane_precompile(TARGET)`: what nearly every file of the core includes, compiled once for all of them. With precompiled
+# headers GCC 12 sees bounds broken in inlined concatenations of strings: .ci/compilers does without, and has these warnings.
 function(conelane_precompile target)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
         target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overread -Wno-stringop-overflow)
     endif()
     if(target STREQUAL conelane_model)
         target_precompile_headers(${target} PRIVATE
-            <Eigen/Core> <algorithm> <array> <cmath> <cstddef> <cstdint> <functional> <limits> <map> <memory> <numbers>
+            <algorithm> <array> <cmath> <cstddef> <cstdint> <functional> <limits> <map> <memory> <numbers>
             <optional> <span> <string> <string_view> <tuple> <utility> <vector>)
     else()
         target_precompile_headers(${target} REUSE_FROM conelane_model)

@@ -54,8 +54,13 @@ constexpr TunedRecipe tuned() {
     return {[] {
                 std::vector<TunableParameter> all;
                 for (const ParameterField<Parameters>& field : fields()) {
-                    all.push_back({field.key, field.unit, field.lowest, field.highest, field.logarithmic,
-                                   field.description, Parameters{}.*field.value});
+                    all.push_back({.key = field.key,
+                                   .unit = field.unit,
+                                   .lowest = field.lowest,
+                                   .highest = field.highest,
+                                   .logarithmic = field.logarithmic,
+                                   .description = field.description,
+                                   .start = Parameters{}.*field.value});
                 }
                 return all;
             },
@@ -113,25 +118,25 @@ constexpr DetectorRecipe kRecipes[]{
     {{"rld-pair", "RLD, exact search over pairs of paths, on all cones", ClosedLanes::never,
       ColorUse::by_weight},
      LearnedFrom::nothing(),
-     RldRecipe{path_pair, {}}},
+     RldRecipe{.make_solver = path_pair}},
     {{"rld-shape", "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
       ClosedLanes::never, ColorUse::by_weight},
      LearnedFrom({}, kShapeCourses),
-     RldRecipe{path_pair, {}, true}},
+     RldRecipe{.make_solver = path_pair, .shape_costs = true}},
     {{"rld-learned",
       "rld-pair with learned costs of edges, turns and ends; steps over missed cones, and proves "
       "that no lane is better by these costs",
       ClosedLanes::never, ColorUse::by_weight},
      LearnedFrom(kLearnedRldWeights),
-     RldRecipe{path_pair, {}, false, "learned", kOtherNear_m}},
+     RldRecipe{.make_solver = path_pair, .parameter_set = "learned", .other_d_near_m = kOtherNear_m}},
     {{"rld-context", "RLD by the exact search among more cones, then cut to the nearest", ClosedLanes::never,
       ColorUse::by_weight},
      LearnedFrom::nothing(),
-     RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
+     RldRecipe{.make_solver = path_pair, .cones = {kRldConeSet, kRldContext}}},
     {{"rld-shape-context", "rld-context with the costs of the lane's shape", ClosedLanes::never,
       ColorUse::by_weight},
      LearnedFrom({}, kShapeCourses),
-     RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
+     RldRecipe{.make_solver = path_pair, .cones = {kRldConeSet, kRldContext}, .shape_costs = true}},
     {{"delaunay-beam",
       "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
       "the lowest cost",
@@ -201,6 +206,18 @@ FrontWeights weights_of(const std::variant<std::filesystem::path, WeightsBytes>&
 
 std::span<const DetectorRecipe> detector_recipes() {
     return kRecipes;
+}
+
+std::vector<DetectorInfo> detectors() {
+    return {std::begin(kRecipes), std::end(kRecipes)};
+}
+
+std::unique_ptr<LaneDetector> make_detector(std::string_view name, const DetectorOptions& options) {
+    if (const DetectorRecipe* const recipe = find_recipe(name)) return make_detector(*recipe, options);
+    std::string names;
+    for (const DetectorRecipe& known : kRecipes)
+        names += (names.empty() ? "" : ", ") + std::string(known.name);
+    throw InvalidInput("detector", "there is no detector '" + std::string(name) + "', only " + names);
 }
 
 const DetectorRecipe* find_recipe(std::string_view name) {

@@ -22,7 +22,7 @@ struct FrontOptions;
 /// RLD: a solver, the cones that it sees, the costs that it minimises.
 struct RldRecipe {
     std::unique_ptr<RldSolver> (*make_solver)();
-    ConeSet cones;
+    ConeSet cones = {};
     bool shape_costs = false;             ///< adds the costs of a lane's shape if the parameters have none
     std::string_view parameter_set = {};  ///< of rld_parameter_set, in place of the defaults
     std::span<const double> other_d_near_m = {};  ///< see RldDetectorOptions

@@ -1,13 +1,45 @@
 #include "conelane/rld_detector.hpp"
 
-#include "detectors/solve_valid_scene.hpp"
+#include "conelane/solve_scene.hpp"
 #include "model/deadline.hpp"
+#include "model/valid_scene_problem.hpp"
 
 #include <algorithm>
+#include <exception>
+#include <new>
 #include <utility>
 
 namespace conelane {
 namespace {
+
+using MakeProblem = LimitedProblem (*)(const Scene&, const RldParameters&, EdgeExtent, const Deadline&);
+
+SolvedScene solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                  SolveArguments arguments, MakeProblem make_problem_of) {
+    const Stopwatch watch;
+    const Deadline deadline(arguments.limits.time_limit_ms);
+    SolvedScene solved;
+    try {
+        LimitedProblem made = make_problem_of(scene, parameters, solver.extent(), deadline);
+        const double problem_ms = watch.elapsed_ms();
+        if (made.problem) {
+            solved.problem = *std::move(made.problem);
+            arguments.limits.time_limit_ms = deadline.remaining_ms();
+            solved.report = solver.solve(solved.problem, arguments);
+        } else {
+            solved.report.status = SolveStatus::stopped;
+            solved.report.stopped_by = made.stopped_by;
+        }
+        solved.report.build_ms += problem_ms;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& failure) {
+        solved.report = {};
+        solved.report.message = failure.what();
+    }
+    solved.total_ms = watch.elapsed_ms();
+    return solved;
+}
 
 LaneStatus lane_status(SolveStatus status) {
     switch (status) {
@@ -47,8 +79,9 @@ class RldDetector : public LaneDetector {
         if (part.left.empty() || part.right.empty()) {
             return solve_by_any_d_near(nearest_ahead(scene, *cones.nearest), deadline);
         }
-        answer.uncut = UncutLane{std::move(answer.lane), answer.optimality};
-        answer.optimality.reset();
+        if (!answer.solved) answer.solved.emplace();
+        answer.solved->lane = std::move(answer.lane);
+        answer.solved->optimality = std::exchange(answer.optimality, {});
         answer.lane = std::move(part);
         return answer;
     }
@@ -62,7 +95,7 @@ class RldDetector : public LaneDetector {
             answer = solve(seen, other, deadline.remaining_ms());
             if (answer.status != LaneStatus::found) continue;
             answer.optimality.reset();
-            answer.other_d_near_m = d_near_m;
+            answer.solved = SolvedLane{.lane = answer.lane, .d_near_m = d_near_m};
             answer.message =
                 "by another d_near, because no lane graph is feasible with that of the parameters";
         }
@@ -72,9 +105,11 @@ class RldDetector : public LaneDetector {
     LaneAnswer solve(const Scene& seen, const RldParameters& parameters, double time_limit_ms) {
         std::optional<LaneGraph> start;
         if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, seen);
-        const RldReport report = solve_valid_scene(*solver_, seen, parameters,
-                                                   {.limits = {time_limit_ms, options_.absolute_gap},
-                                                    .start = start ? &*start : nullptr})
+        // The scene has been validated already.
+        const RldReport report = conelane::solve(*solver_, seen, parameters,
+                                                 {.limits = {time_limit_ms, options_.absolute_gap},
+                                                  .start = start ? &*start : nullptr},
+                                                 make_problem_of_valid_scene)
                                      .report;
         if (options_.warm_start && report.lane_graph) previous_ = Solution{seen, *report.lane_graph};
         LaneAnswer answer;
@@ -103,6 +138,11 @@ class RldDetector : public LaneDetector {
 };
 
 }  // namespace
+
+SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                        const SolveArguments& arguments) {
+    return solve(solver, scene, parameters, arguments, make_problem);
+}
 
 bool ConeSet::has_context() const {
     return nearest && context > nearest;

@@ -30,14 +30,14 @@ RowWriter::RowWriter(BinaryProgram& program, const Deadline* deadline)
 
 bool RowWriter::stop() {
     constexpr int kRowsPerClock = 8;
-    if (deadline_ == nullptr || struck_ || --until_clock_ > 0) return struck_.has_value();
+    if (deadline_ == nullptr || stopped_by_ || --until_clock_ > 0) return stopped_by_.has_value();
     until_clock_ = kRowsPerClock;
     if (program_.columns.size() + program_.entry_columns.size() > kMaxProgramEntries) {
-        struck_ = StopReason::memory;
+        stopped_by_ = StopReason::memory;
     } else if (deadline_->passed()) {
-        struck_ = StopReason::time;
+        stopped_by_ = StopReason::time;
     }
-    return struck_.has_value();
+    return stopped_by_.has_value();
 }
 
 void RowWriter::begin(const Label& label, double lower, double upper) {

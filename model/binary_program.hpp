@@ -77,7 +77,7 @@ class RowWriter {
     /// Whether to stop. A caller that writes many rows checks this between them. Rows written after it is
     /// true are ignored.
     [[nodiscard]] bool stop();
-    [[nodiscard]] std::optional<StopReason> struck() const { return struck_; }
+    [[nodiscard]] std::optional<StopReason> stopped_by() const { return stopped_by_; }
 
     void begin(const Label& label, double lower, double upper);
     void add(int column, double coefficient);
@@ -87,7 +87,7 @@ class RowWriter {
     BinaryProgram& program_;
     const Deadline* deadline_;
     int until_clock_ = 0;
-    std::optional<StopReason> struck_;
+    std::optional<StopReason> stopped_by_;
     std::vector<int> position_;  ///< position of a column in the open row, -1 if absent
 };
 

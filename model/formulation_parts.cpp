@@ -15,9 +15,15 @@ constexpr std::array kPaper{constraints::width_pairs, constraints::heading,     
 constexpr std::array kTight{constraints::turn_flow, constraints::four_endpoints, constraints::width_cliques,
                             constraints::heading,   constraints::near_endpoints, constraints::far_partners};
 
-constexpr FormulationParts kPaperParts{EdgeExtent::all_pairs, true,  true, true, false, true,
-                                       kPaperFixed,           kPaper};
-constexpr FormulationParts kTightParts{EdgeExtent::candidates, false, false, false, true, false, {}, kTight};
+constexpr FormulationParts kPaperParts{.extent = EdgeExtent::all_pairs,
+                                       .high_cost_turns = true,
+                                       .inliers = true,
+                                       .far_marks = true,
+                                       .all_integer = true,
+                                       .fixed_families = kPaperFixed,
+                                       .families = kPaper};
+constexpr FormulationParts kTightParts{
+    .extent = EdgeExtent::candidates, .path_ends = true, .families = kTight};
 
 }  // namespace
 

@@ -31,13 +31,13 @@ using ConstraintFamily = void (*)(const FamilyContext&);
 /// A formulation as a list of parts.
 struct FormulationParts {
     EdgeExtent extent;
-    bool high_cost_turns;  ///< f columns also for forbidden turns
-    bool inliers;          ///< g columns
-    bool far_marks;        ///< u columns
-    bool path_ends;        ///< e columns
-    bool all_integer;
+    bool high_cost_turns = false;  ///< f columns also for forbidden turns
+    bool inliers = false;          ///< g columns
+    bool far_marks = false;        ///< u columns
+    bool path_ends = false;        ///< e columns
+    bool all_integer = false;
     /// Families whose rows depend only on the number of cones. Their rows come first.
-    std::span<const ConstraintFamily> fixed_families;
+    std::span<const ConstraintFamily> fixed_families = {};
     std::span<const ConstraintFamily> families;  ///< the other families
 };
 [[nodiscard]] const FormulationParts& parts(Formulation formulation);

@@ -57,4 +57,16 @@ std::string_view to_string(LaneStatus status) {
     return "error";
 }
 
+std::string_view to_string(StopReason reason) {
+    switch (reason) {
+        case StopReason::iterations:
+            return "iterations";
+        case StopReason::memory:
+            return "memory";
+        case StopReason::time:
+            break;
+    }
+    return "time";
+}
+
 }  // namespace conelane

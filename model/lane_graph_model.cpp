@@ -34,10 +34,10 @@ void LaneGraphModel::update(const LaneGraphProblem& problem) {
 std::optional<StopReason> LaneGraphModel::update(const LaneGraphProblem& problem, const Deadline& deadline) {
     const bool too_large =
         is_too_large(problem) || problem.turns.size() + problem.edges.size() > kMaxProgramEntries;
-    const std::optional<StopReason> struck =
+    const std::optional<StopReason> stopped_by =
         too_large ? std::optional(StopReason::memory) : update(problem, &deadline);
-    if (struck) problem_cones_.reset();
-    return struck;
+    if (stopped_by) problem_cones_.reset();
+    return stopped_by;
 }
 
 std::optional<StopReason> LaneGraphModel::update(const LaneGraphProblem& problem, const Deadline* deadline) {
@@ -59,7 +59,7 @@ std::optional<StopReason> LaneGraphModel::build(const Deadline* deadline) {
     program_.columns.clear();
     program_.truncate_rows(0);
     add_columns();
-    if (const auto struck = write_rows(parts(formulation_).fixed_families, deadline)) return struck;
+    if (const auto stopped_by = write_rows(parts(formulation_).fixed_families, deadline)) return stopped_by;
     fixed_rows_ = program_.rows.size();
     return write_rows(parts(formulation_).families, deadline);
 }
@@ -133,7 +133,7 @@ std::optional<StopReason> LaneGraphModel::write_rows(std::span<const ConstraintF
         family({*problem_, columns_, rows});
         if (rows.stop()) break;
     }
-    return rows.struck();
+    return rows.stopped_by();
 }
 
 std::vector<bool> LaneGraphModel::chosen_edges(std::span<const double> point) const {

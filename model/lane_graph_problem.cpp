@@ -36,16 +36,16 @@ class Limits {
 
     /// Call it before a step with this amount of work, in operations of a few nanoseconds.
     bool stop(const LaneGraphProblem& problem, std::size_t work) {
-        if (deadline_ == nullptr || struck_) return struck_.has_value();
+        if (deadline_ == nullptr || stopped_by_) return stopped_by_.has_value();
         work_ += work;
         if (work_ < kWorkPerClock) return false;
         work_ = 0;
         if (is_too_large(problem)) {
-            struck_ = StopReason::memory;
+            stopped_by_ = StopReason::memory;
         } else if (deadline_->passed()) {
-            struck_ = StopReason::time;
+            stopped_by_ = StopReason::time;
         }
-        return struck_.has_value();
+        return stopped_by_.has_value();
     }
     /// The same, but the limits are checked at once.
     bool stop(const LaneGraphProblem& problem) { return stop(problem, kWorkPerClock); }
@@ -53,18 +53,18 @@ class Limits {
     /// Whether all pairs of so many cones are more edges than a problem may have.
     bool stop_for_table(std::size_t cones) {
         if (deadline_ != nullptr && cones > 1 && cones * (cones - 1) / 2 > kMaxProblemEdges)
-            struck_ = StopReason::memory;
-        return struck_.has_value();
+            stopped_by_ = StopReason::memory;
+        return stopped_by_.has_value();
     }
 
-    [[nodiscard]] std::optional<StopReason> struck() const { return struck_; }
+    [[nodiscard]] std::optional<StopReason> stopped_by() const { return stopped_by_; }
 
   private:
     static constexpr std::size_t kWorkPerClock = 20'000;
 
     const Deadline* deadline_ = nullptr;
     std::size_t work_ = 0;
-    std::optional<StopReason> struck_;
+    std::optional<StopReason> stopped_by_;
 };
 
 double fourth_power(double value) {
@@ -119,15 +119,15 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
     const double color_cost = color_cost_of(scene, i, j, along_heading);
     const double benefit =
         p.use_confidence ? p.w_b * scene.cones[i].confidence * scene.cones[j].confidence : p.w_b;
-    return {i,
-            j,
-            spacing_cost,
-            heading_cost,
-            color_cost,
-            0.0,
-            p.w_s * spacing_cost + p.w_p * heading_cost + p.w_color * color_cost - benefit,
-            along_heading,
-            !within(spacing_cost, p.s_crit) || length < kMinEdge_m};
+    return {.i = i,
+            .j = j,
+            .spacing_cost = spacing_cost,
+            .heading_cost = heading_cost,
+            .color_cost = color_cost,
+            .facing_cost = 0.0,
+            .cost = p.w_s * spacing_cost + p.w_p * heading_cost + p.w_color * color_cost - benefit,
+            .along_heading = along_heading,
+            .high_cost = !within(spacing_cost, p.s_crit) || length < kMinEdge_m};
 }
 
 /// By cone: the distance of its k-th nearest other cone; infinite if there is none within max_m, or k is 0.
@@ -160,8 +160,8 @@ double longest_edge_m(const RldParameters& p) {
 /// Excludes the edges that k_edge excludes. Precondition: all edges within s_crit are listed, and no gaps.
 void keep_nearest(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem, Limits& limits) {
     const RldParameters& p = problem.parameters;
-    if (!(p.k_edge > 0.0) || limits.stop(problem, problem.cone_count * problem.cone_count)) return;
-    const std::vector<double> reach_m = reach_of_nearest(scene, p.k_edge, longest_edge_m(p));
+    if (!(p.nearest_of_edge > 0.0) || limits.stop(problem, problem.cone_count * problem.cone_count)) return;
+    const std::vector<double> reach_m = reach_of_nearest(scene, p.nearest_of_edge, longest_edge_m(p));
     const auto is_excluded = [&](const ProblemEdge& edge) {
         const double length_m = (scene.cones[edge.j].position - scene.cones[edge.i].position).norm();
         return !within(length_m, reach_m[edge.i]) && !within(length_m, reach_m[edge.j]);
@@ -205,7 +205,7 @@ std::vector<ProblemEdge> find_gaps(const Scene& scene, const Point& heading, con
     const std::size_t n = problem.cone_count;
     std::vector<ProblemEdge> gaps;
     if (p.d_gap <= p.d_e || limits.stop(problem, n * n)) return gaps;
-    const std::vector<double> reach_m = reach_of_nearest(scene, p.k_gap, p.d_gap);
+    const std::vector<double> reach_m = reach_of_nearest(scene, p.nearest_of_gap, p.d_gap);
     std::vector<std::vector<std::size_t>> next(n);
     for (const ProblemEdge& edge : problem.edges) {
         if (edge.high_cost) continue;
@@ -283,21 +283,21 @@ void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limit
 /// Precondition: all edges are listed.
 void add_shape_costs(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     const RldParameters& p = problem.parameters;
-    if (p.w_v > 0.0 || p.learned_costs) {
+    if (p.facing_weight > 0.0 || p.learned_costs) {
         const auto stop = [&](std::size_t pairs) { return limits.stop(problem, 4 * pairs); };
         const std::vector<double> facing = facing_costs(scene, problem.edges, problem.facers, p, stop);
-        if (limits.struck()) return;
+        if (limits.stopped_by()) return;
         for (std::size_t e = 0; e < facing.size(); ++e) problem.edges[e].facing_cost = facing[e];
     }
     problem.near_end_fit.assign(problem.cone_count, 0.0);
-    if (p.w_n > 0.0) {
+    if (p.near_end_weight > 0.0) {
         for (std::size_t i = 0; i < problem.cone_count; ++i) {
             if (problem.near[i]) problem.near_end_fit[i] = near_end_fit(scene, scene.cones[i].position, p);
         }
     }
     for (ProblemEdge& edge : problem.edges) {
-        edge.cost +=
-            p.w_v * edge.facing_cost - p.w_n * (problem.near_end_fit[edge.i] + problem.near_end_fit[edge.j]);
+        edge.cost += p.facing_weight * edge.facing_cost -
+                     p.near_end_weight * (problem.near_end_fit[edge.i] + problem.near_end_fit[edge.j]);
     }
 }
 
@@ -333,7 +333,7 @@ void find_turns(const Scene& scene, const LearnedFeatures* features, LaneGraphPr
         const std::vector<std::size_t>& incident = problem.incident[middle];
         const Point& at = scene.cones[middle].position;
         const double end_cost =
-            2.0 * p.w_n * problem.near_end_fit[middle] - 2.0 * problem.learned_end_cost[middle];
+            2.0 * p.near_end_weight * problem.near_end_fit[middle] - 2.0 * problem.learned_end_cost[middle];
         for (std::size_t first = 0; first < incident.size(); ++first) {
             const std::size_t work = features != nullptr ? 200 : 20;
             if (limits.stop(problem, work * (incident.size() - first))) return;
@@ -343,8 +343,9 @@ void find_turns(const Scene& scene, const LearnedFeatures* features, LaneGraphPr
                 const Point& after = scene.cones[other_end(incident[second], middle)].position;
                 const double angle = interior_angle(before, at, after);
                 const double angle_cost = fourth_power((angle - p.theta_e) / p.theta_t);  // (20)
-                const double uneven =
-                    p.w_u > 0.0 ? unevenness((before - at).norm(), (after - at).norm(), p) : 0.0;
+                const double uneven = p.unevenness_weight > 0.0
+                                          ? unevenness((before - at).norm(), (after - at).norm(), p)
+                                          : 0.0;
                 const ProblemEdge& e = problem.edges[incident[first]];
                 const ProblemEdge& f = problem.edges[incident[second]];
                 const bool too_sharp = !within(angle_cost, p.t_crit) ||
@@ -354,9 +355,15 @@ void find_turns(const Scene& scene, const LearnedFeatures* features, LaneGraphPr
                     learned = std::max(0.0, p.learned_costs->of(LearnedPart::turn)(features->turn(
                                                 incident[first], incident[second], middle, angle_cost)));
                 }
-                problem.turns.push_back({incident[first], incident[second], middle, angle_cost, uneven,
-                                         p.w_t * angle_cost + p.w_u * uneven + end_cost + learned, too_sharp,
-                                         learned});
+                problem.turns.push_back(
+                    {.edge_i = incident[first],
+                     .edge_k = incident[second],
+                     .middle = middle,
+                     .angle_cost = angle_cost,
+                     .unevenness = uneven,
+                     .cost = p.w_t * angle_cost + p.unevenness_weight * uneven + end_cost + learned,
+                     .high_cost = too_sharp,
+                     .learned_cost = learned});
             }
         }
     }
@@ -461,7 +468,7 @@ LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& param
     find_edges(scene, extent, problem, limits);
     const std::vector<ProblemEdge> gaps = find_gaps(scene, scene.pose.heading(), problem, limits);
     if (limits.stop(problem)) return problem;
-    if (parameters.w_v > 0.0 || parameters.learned_costs) {
+    if (parameters.facing_weight > 0.0 || parameters.learned_costs) {
         for (const ProblemEdge& edge : problem.edges) {
             if (!edge.high_cost) problem.facers.push_back({edge.i, edge.j});
         }
@@ -503,7 +510,7 @@ LimitedProblem make_problem_of_valid_scene(const Scene& scene, const RldParamete
     validate(parameters);
     Limits limits(deadline);
     LaneGraphProblem problem = problem_of_valid(scene, parameters, extent, limits);
-    if (limits.struck()) return {std::nullopt, limits.struck()};
+    if (limits.stopped_by()) return {std::nullopt, limits.stopped_by()};
     return {std::move(problem), std::nullopt};
 }
 

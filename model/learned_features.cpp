@@ -207,7 +207,7 @@ std::array<double, kNearEndFeatures> LearnedFeatures::near_end(std::size_t cone)
     for (const std::size_t k : around_[cone])
         behind +=
             hat((at(k) - at(cone)).squaredNorm(), kOn_m) * ramp((ahead_m_[cone] - ahead_m_[k]) / kOnRamp_m);
-    const double off_m = std::abs(std::abs(scene_->pose.left_m(at(cone))) - 0.5 * p.d_w);
+    const double off_m = std::abs(std::abs(scene_->pose.left_m(at(cone))) - 0.5 * p.lane_width_m);
     return {1.0,
             near_end_fit(*scene_, at(cone), p),
             std::min(off_m / p.d_t, kMaxOffAxis),

@@ -106,7 +106,7 @@ class LearnedReference {
 
     [[nodiscard]] Real near_end(std::size_t cone) const {
         const Real ahead = dot(ahead_, place_[cone]);
-        const Real off = size(size(wedge(ahead_, place_[cone])) - Real(p_.d_w) / 2) / Real(p_.d_t);
+        const Real off = size(size(wedge(ahead_, place_[cone])) - Real(p_.lane_width_m) / 2) / Real(p_.d_t);
         Real behind(0);
         for (std::size_t k = 0; k < place_.size(); ++k) {
             if (k == cone) continue;
@@ -213,8 +213,9 @@ class LearnedReference {
     [[nodiscard]] Real facing(std::size_t i, std::size_t j) const {
         const auto known = known_facing_.find({i, j});
         if (known != known_facing_.end()) return known->second;
-        const Real d_v(p_.d_v), theta_v(p_.theta_v), d_w(p_.d_w), d_l(p_.d_l);
-        const double reach_m = p_.d_w + 2.0 * p_.d_v + 1e-6;
+        const Real d_v(p_.facing_distance_m), theta_v(p_.facing_angle_rad), d_w(p_.lane_width_m),
+            d_l(p_.facing_length_m);
+        const double reach_m = p_.lane_width_m + 2.0 * p_.facing_distance_m + 1e-6;
         const Real best = best_facing(
             i, j, reach_m, [&](const Real& l, const Real& b, const Real& sine, const Real& longer) {
                 return Real((l * l + (b - d_w) * (b - d_w)) / (d_v * d_v) +

@@ -39,20 +39,21 @@ constexpr std::array<RldParameterField, 15> kFields{{
 
 constexpr std::array<RldParameterField, 14> kExtraFields{{
     {"w_color", &P::w_color, "1", 0.0, kMaxWeight, "weight of the colour cost"},
-    {"w_u", &P::w_u, "1", 0.0, kMaxWeight, "weight of uneven spacing"},
-    {"w_v", &P::w_v, "1", 0.0, kMaxWeight, "weight of the facing cost"},
-    {"w_n", &P::w_n, "1", 0.0, kMaxWeight, "benefit of a near endpoint beside the car"},
-    {"d_w", &P::d_w, "m", 0.0, kMaxLength_m, "expected width of the lane"},
-    {"d_v", &P::d_v, "m", kMinThreshold, kMaxLength_m, "facing threshold"},
-    {"theta_v", &P::theta_v, "rad", kMinThreshold, std::numbers::pi, "facing angle threshold"},
-    {"d_l", &P::d_l, "m", kMinThreshold, kMaxLength_m, "facing length threshold"},
+    {"w_u", &P::unevenness_weight, "1", 0.0, kMaxWeight, "weight of uneven spacing"},
+    {"w_v", &P::facing_weight, "1", 0.0, kMaxWeight, "weight of the facing cost"},
+    {"w_n", &P::near_end_weight, "1", 0.0, kMaxWeight, "benefit of a near endpoint beside the car"},
+    {"d_w", &P::lane_width_m, "m", 0.0, kMaxLength_m, "expected width of the lane"},
+    {"d_v", &P::facing_distance_m, "m", kMinThreshold, kMaxLength_m, "facing threshold"},
+    {"theta_v", &P::facing_angle_rad, "rad", kMinThreshold, std::numbers::pi, "facing angle threshold"},
+    {"d_l", &P::facing_length_m, "m", kMinThreshold, kMaxLength_m, "facing length threshold"},
     {"d_gap", &P::d_gap, "m", 0.0, kMaxGap_m, "largest length of an edge over a gap"},
     {"theta_gap", &P::theta_gap, "rad", 0.0, std::numbers::pi, "largest angle at an edge over a gap"},
     {"d_clear", &P::d_clear, "m", 0.0, kMaxLength_m,
      "distance of an edge over a gap from the cones beside it"},
     {"d_side", &P::d_side, "m", 0.0, kMaxLength_m, "distance of the near endpoints from the car's axis"},
-    {"k_edge", &P::k_edge, "1", 0.0, kMaxCount, "an edge joins a cone with one of its so many nearest"},
-    {"k_gap", &P::k_gap, "1", 0.0, kMaxCount, "the same for an edge over a gap"},
+    {"k_edge", &P::nearest_of_edge, "1", 0.0, kMaxCount,
+     "an edge joins a cone with one of its so many nearest"},
+    {"k_gap", &P::nearest_of_gap, "1", 0.0, kMaxCount, "the same for an edge over a gap"},
 }};
 
 void require_in_range(const RldParameterField& field, const RldParameters& parameters) {
@@ -86,14 +87,15 @@ RldParameters with_shape_costs(RldParameters parameters) {
     parameters.d_min = 2.8;
     parameters.theta_heading = 1.3;
     parameters.s_crit = 7.0;
-    parameters.w_u = 0.4;
-    parameters.w_v = 0.8;
-    parameters.w_n = 1.2;
+    parameters.unevenness_weight = 0.4;
+    parameters.facing_weight = 0.8;
+    parameters.near_end_weight = 1.2;
     return parameters;
 }
 
 bool has_shape_costs(const RldParameters& parameters) {
-    return parameters.w_u > 0.0 || parameters.w_v > 0.0 || parameters.w_n > 0.0;
+    return parameters.unevenness_weight > 0.0 || parameters.facing_weight > 0.0 ||
+           parameters.near_end_weight > 0.0;
 }
 
 void validate(const RldParameters& parameters) {

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 namespace conelane {
 namespace {
 
@@ -81,7 +79,7 @@ std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edge
     std::vector<double> costs(edges.size(), 1.0);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const PlacedEdge place = placed(scene, edges[e].i, edges[e].j, e);
-        if (place.direction.isZero()) continue;
+        if (place.direction == Point()) continue;
         const auto lists = placed_facers.around(place.middle);
         if (stop && stop(lists[0].size() + lists[1].size() + lists[2].size())) return costs;
         double least = 1.0;
@@ -106,10 +104,11 @@ std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge
                                  std::span<const Edge> facers, const RldParameters& p,
                                  const std::function<bool(std::size_t)>& stop) {
     const auto cost = [&p](double along_squared, double across, double sine, double longer_m) {
-        const double unlike = square(sine / p.theta_v) + square(longer_m / p.d_l);
-        return (along_squared + square(std::abs(across) - p.d_w)) / square(p.d_v) + unlike;
+        const double unlike = square(sine / p.facing_angle_rad) + square(longer_m / p.facing_length_m);
+        return (along_squared + square(std::abs(across) - p.lane_width_m)) / square(p.facing_distance_m) +
+               unlike;
     };
-    return facing(scene, edges, facers, p.d_w + p.d_v, cost, stop);
+    return facing(scene, edges, facers, p.lane_width_m + p.facing_distance_m, cost, stop);
 }
 
 std::vector<double> facing_at_any_width(const Scene& scene, std::span<const ProblemEdge> edges,
@@ -133,7 +132,7 @@ double unevenness(double before_m, double after_m, const RldParameters& paramete
 }
 
 double near_end_fit(const Scene& scene, const Point& cone, const RldParameters& p) {
-    return std::max(0.0, 1.0 - square((std::abs(scene.pose.left_m(cone)) - 0.5 * p.d_w) / p.d_t));
+    return std::max(0.0, 1.0 - square((std::abs(scene.pose.left_m(cone)) - 0.5 * p.lane_width_m) / p.d_t));
 }
 
 }  // namespace conelane

@@ -32,7 +32,8 @@ class CMakeBuild(build_ext):
         subprocess.run(["cmake", "--build", str(build), "--target", "conelane_python", "--parallel", jobs], check=True)
         target = Path(self.get_ext_fullpath(ext.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(build / "python" / "conelane" / target.name, target)
+        for name in (target.name, "_core.pyi"):
+            shutil.copy2(build / "python" / "conelane" / name, target.parent)
 
     @staticmethod
     def configure(build: Path) -> None:

@@ -1,9 +1,6 @@
 #include "detectors/drivable/drivable_answers.hpp"
 
-#include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
-#include "detectors/drivable/drivable_within.hpp"
-#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <optional>

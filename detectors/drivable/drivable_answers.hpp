@@ -1,8 +1,11 @@
 #pragma once
 
+#include "conelane/drivable_lane.hpp"
 #include "conelane/lane_detector.hpp"
+#include "model/deadline.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace conelane {
 
@@ -20,5 +23,11 @@ namespace conelane {
 /// 96 % of the time limit, or all but 2 ms if that is more, and that call gets the rest, at least 0.5 ms. If
 /// it takes longer, the status is `stopped` by time.
 [[nodiscard]] std::unique_ptr<LaneDetector> answer_drivable_lanes(std::unique_ptr<LaneDetector> detector);
+
+/// The same as `drivable`; nothing if the deadline passes first. The deadline is checked at least every half
+/// millisecond for lanes of up to a kilometre.
+[[nodiscard]] std::optional<DrivableLane> drivable_within(const Lane& lane, const Scene& scene,
+                                                          const DrivableOptions& options,
+                                                          const Deadline& deadline);
 
 }  // namespace conelane

@@ -1,12 +1,10 @@
 #include "conelane/drivable_lane.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "detectors/drivable/drivable_within.hpp"
-#include "detectors/drivable/inferred_boundary.hpp"
+#include "detectors/drivable/drivable_answers.hpp"
 #include "detectors/drivable/lane_boundary.hpp"
 #include "detectors/drivable/lane_rungs.hpp"
 #include "detectors/drivable/smoothing_spline.hpp"
-#include "detectors/drivable/time_check.hpp"
 
 #include <algorithm>
 #include <array>

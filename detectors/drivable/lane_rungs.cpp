@@ -229,13 +229,6 @@ void space_evenly(RungLadder& ladder) {
     }
 }
 
-/// Reverses a ladder's matching, so that its end can be treated like its beginning.
-void turn_round(Places& left, Places& right, std::vector<Rung>& rungs) {
-    std::ranges::reverse(left);
-    std::ranges::reverse(right);
-    std::ranges::reverse(rungs);
-}
-
 /// Rungs and places behind the end of the matching, where one boundary has ended. `left_side` is 1 if the
 /// left boundary is to the left of the matching's direction, else -1.
 struct Extension {
@@ -250,25 +243,21 @@ Extension extension(const Places& left, const Places& right, const Rung& last, d
     };
     const std::size_t i = index_of(left, last.left_m);
     const std::size_t j = index_of(right, last.right_m);
+    const bool left_ends = i + 1 == left.size();
+    if (!left_ends && j + 1 != right.size()) return {};
+    const Point& end = left_ends ? last.left : last.right;
+    KeptWidth kept = left_ends ? keep_width(end, right, j, left_side, widest_m)
+                               : keep_width(end, left, i, -left_side, widest_m);
+    double arc_m = left_ends ? last.left_m : last.right_m;
     Extension result;
-    const auto sign = [](double m) { return m < 0.0 ? -1.0 : 1.0; };
-    if (i + 1 == left.size()) {
-        KeptWidth kept = keep_width(last.left, right, j, left_side, widest_m);
-        double arc_m = last.left_m;
-        for (std::size_t k = 0; k < kept.ended.size(); ++k) {
-            arc_m += sign(left_side) * (kept.ended[k] - (k > 0 ? kept.ended[k - 1] : last.left)).norm();
-            result.rungs.push_back({kept.ended[k], kept.beside[k].point, arc_m, kept.beside[k].arc_m});
-        }
-        result.left = std::move(kept.ended);
-    } else if (j + 1 == right.size()) {
-        KeptWidth kept = keep_width(last.right, left, i, -left_side, widest_m);
-        double arc_m = last.right_m;
-        for (std::size_t k = 0; k < kept.ended.size(); ++k) {
-            arc_m += sign(left_side) * (kept.ended[k] - (k > 0 ? kept.ended[k - 1] : last.right)).norm();
-            result.rungs.push_back({kept.beside[k].point, kept.ended[k], kept.beside[k].arc_m, arc_m});
-        }
-        result.right = std::move(kept.ended);
+    for (std::size_t k = 0; k < kept.ended.size(); ++k) {
+        const Point& ended = kept.ended[k];
+        const Place& beside = kept.beside[k];
+        arc_m += left_side * (ended - (k > 0 ? kept.ended[k - 1] : end)).norm();
+        result.rungs.push_back(left_ends ? Rung{ended, beside.point, arc_m, beside.arc_m}
+                                         : Rung{beside.point, ended, beside.arc_m, arc_m});
     }
+    (left_ends ? result.left : result.right) = std::move(kept.ended);
     return result;
 }
 
@@ -298,7 +287,9 @@ RungLadder open_ladder(const LaneBoundary& left, const LaneBoundary& right, doub
     std::ranges::reverse(right_part);
     rungs = matched(left_part, right_part, true, check_time);
     drop_fan(rungs);
-    turn_round(left_places, right_places, rungs);
+    std::ranges::reverse(left_places);  // so that the beginning is an end
+    std::ranges::reverse(right_places);
+    std::ranges::reverse(rungs);
     const Extension before = extension(left_places, right_places, rungs.front(), -1.0, widest_m);
     std::ranges::reverse(left_places);
     std::ranges::reverse(right_places);

@@ -15,7 +15,7 @@ constexpr double kOverlap = 40.0;
 /// Symmetric positive definite band matrix with its right side.
 class BandSystem {
   public:
-    explicit BandSystem(std::size_t size) : rows_(size), right_(size, Point::Zero()) {}
+    explicit BandSystem(std::size_t size) : rows_(size), right_(size) {}
 
     /// Adds weight * (v v^T, v value) for the row vector v that starts at `first`.
     template <std::size_t count>
@@ -84,7 +84,7 @@ SmoothingSpline::SmoothingSpline(std::span<const Point> points, std::span<const 
             square = std::pow(2.0 * std::sin(0.5 * rate * knot_spacing_m_), 2.0);
         }
         const std::array<double, 4> row{-1.0, 3.0 - square, square - 3.0, 1.0};
-        system.add(r, row, penalty, Point::Zero());
+        system.add(r, row, penalty, Point());
     }
     control_ = std::move(system).solve();
     if (closed) {

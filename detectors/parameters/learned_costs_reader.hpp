@@ -4,9 +4,21 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace conelane {
+
+/// Calls use(key, numbers) for each list of numbers, in the order of files.
+template <typename Costs, typename Use>
+void for_each_costs_list(Costs& costs, const Use& use) {
+    for (const LearnedPart part : kLearnedParts) {
+        const std::string name(to_string(part));
+        use(name + "_linear", costs.of(part).linear);
+        use(name + "_hidden", costs.of(part).hidden);
+        use(name + "_output", costs.of(part).output);
+    }
+}
 
 /// Learned costs from the bytes of a file that `conelane train rld --out FILE` wrote: a JSON object with
 /// `version` 1, `features`, the names of the features of each part as the library has them, and for each part

@@ -23,13 +23,6 @@ struct Match {
 ConeMemory::ConeMemory(const ConeMemorySettings& settings, const ShiftSettings& shift_settings)
     : settings_(settings), shift_settings_(shift_settings) {}
 
-void ConeMemory::clear() {
-    cones_.clear();
-    frame_ = 0;
-    next_id_ = kNoId + 1;
-    range_m_ = 0.0;
-}
-
 std::optional<RigidShift> ConeMemory::observe(const Frame& frame) {
     ++frame_;
     range_m_ = 0.0;
@@ -37,37 +30,48 @@ std::optional<RigidShift> ConeMemory::observe(const Frame& frame) {
         range_m_ = std::max(range_m_, (cone.position - frame.pose.position).norm());
     }
     const double near_m = std::max(range_m_, settings_.max_range_m) + settings_.same_id_gate_m;
-    std::vector<std::size_t> near;
+    Indices near;
     for (std::size_t i = 0; i < cones_.size(); ++i) {
         if ((cones_[i].position - frame.pose.position).squaredNorm() <= near_m * near_m) near.push_back(i);
     }
-    const std::optional<RigidShift> shift = shift_of(frame, near);
+    Indices remembered_of = by_id(frame, near);
+    const std::optional<RigidShift> shift = shift_of(frame, near, remembered_of);
     if (shift) {
         for (RememberedCone& cone : cones_) cone.position = (*shift)(cone.position);
     }
-    associate(frame, near);
+    associate(frame, near, remembered_of);
+    for (std::size_t k = 0; k < frame.cones.size(); ++k) see(frame.cones[k], remembered_of[k]);
     miss_unseen(frame, near);
     forget();
     return shift;
 }
 
-std::optional<RigidShift> ConeMemory::shift_of(const Frame& frame,
-                                               const std::vector<std::size_t>& near) const {
-    std::vector<std::pair<ConeId, std::size_t>> by_id;
+/// For each cone of the frame, the near one that the car gave the same id, or kNone.
+ConeMemory::Indices ConeMemory::by_id(const Frame& frame, const Indices& near) const {
+    std::vector<std::pair<ConeId, std::size_t>> given;
     for (const std::size_t i : near) {
-        if (cones_[i].given != kNoId) by_id.emplace_back(cones_[i].given, i);
+        if (cones_[i].given != kNoId) given.emplace_back(cones_[i].given, i);
     }
-    std::ranges::sort(by_id);
+    std::ranges::sort(given);
+    Indices remembered_of;
+    for (const Cone& cone : frame.cones) {
+        const auto known = std::ranges::lower_bound(given, std::pair(cone.id, std::size_t{0}));
+        const bool is_known = cone.id != kNoId && known != given.end() && known->first == cone.id;
+        remembered_of.push_back(is_known ? known->second : kNone);
+    }
+    return remembered_of;
+}
+
+std::optional<RigidShift> ConeMemory::shift_of(const Frame& frame, const Indices& near,
+                                               const Indices& remembered_of) const {
     std::vector<PlacePair> pairs;
     std::size_t unmoved = 0;
-    std::vector<Point> seen;
-    for (const Cone& cone : frame.cones) {
-        seen.push_back(cone.position);
-        const auto known = std::ranges::lower_bound(by_id, std::pair(cone.id, std::size_t{0}));
-        if (cone.id == kNoId || known == by_id.end() || known->first != cone.id) continue;
-        const Point& place = cones_[known->second].position;
-        const double distance_m = (place - cone.position).norm();
-        if (distance_m <= shift_settings_.reach_m) pairs.push_back({place, cone.position});
+    for (std::size_t k = 0; k < frame.cones.size(); ++k) {
+        if (remembered_of[k] == kNone) continue;
+        const Point& seen = frame.cones[k].position;
+        const Point& place = cones_[remembered_of[k]].position;
+        const double distance_m = (place - seen).norm();
+        if (distance_m <= shift_settings_.reach_m) pairs.push_back({place, seen});
         if (distance_m <= shift_settings_.min_shift_m) ++unmoved;
     }
     if (pairs.size() >= shift_settings_.min_cones && 2 * pairs.size() >= frame.cones.size()) {
@@ -79,42 +83,29 @@ std::optional<RigidShift> ConeMemory::shift_of(const Frame& frame,
         if (cones_[i].sightings > 1) remembered.push_back(cones_[i].position);
     }
     // Only cones near a remembered one can have moved away from it.
-    const auto nearest_m = [&](const Point& place) {
-        double nearest = shift_settings_.reach_m;
-        for (const Point& other : remembered) nearest = std::min(nearest, (other - place).norm());
-        return nearest;
-    };
     std::vector<Point> compared;
-    for (const Point& place : seen) {
-        const double distance_m = nearest_m(place);
-        if (distance_m < shift_settings_.reach_m) compared.push_back(place);
-        if (distance_m <= shift_settings_.inlier_m) ++unmoved;
+    for (const Cone& cone : frame.cones) {
+        double nearest_m = shift_settings_.reach_m;
+        for (const Point& other : remembered) nearest_m = std::min(nearest_m, (other - cone.position).norm());
+        if (nearest_m < shift_settings_.reach_m) compared.push_back(cone.position);
+        if (nearest_m <= shift_settings_.inlier_m) ++unmoved;
     }
     if (3 * unmoved > 2 * compared.size()) return std::nullopt;
     return common_shift(remembered, compared, shift_settings_);
 }
 
-void ConeMemory::associate(const Frame& frame, const std::vector<std::size_t>& near) {
-    std::vector<std::size_t> remembered_of(frame.cones.size(), kNone);
+/// Leaves out ids whose cones are too far apart, and finds the other cones by their places.
+void ConeMemory::associate(const Frame& frame, const Indices& near, Indices& remembered_of) {
     std::vector<bool> taken(cones_.size(), false);
-    std::vector<std::pair<ConeId, std::size_t>> by_id;
-    for (const std::size_t i : near) {
-        if (cones_[i].given != kNoId) by_id.emplace_back(cones_[i].given, i);
-    }
-    std::ranges::sort(by_id);
-    std::vector<bool> known_id(frame.cones.size(), false);
     for (std::size_t k = 0; k < frame.cones.size(); ++k) {
-        const Cone& cone = frame.cones[k];
-        if (cone.id == kNoId) continue;
-        const auto known = std::ranges::lower_bound(by_id, std::pair(cone.id, std::size_t{0}));
-        if (known == by_id.end() || known->first != cone.id) continue;
-        RememberedCone& remembered = cones_[known->second];
-        if ((remembered.position - cone.position).norm() > settings_.same_id_gate_m) {
+        if (remembered_of[k] == kNone) continue;
+        RememberedCone& remembered = cones_[remembered_of[k]];
+        if ((remembered.position - frame.cones[k].position).norm() > settings_.same_id_gate_m) {
             remembered.given = kNoId;
-            continue;
+            remembered_of[k] = kNone;
+        } else {
+            taken[remembered_of[k]] = true;
         }
-        remembered_of[k] = known->second;
-        taken[known->second] = true;
     }
     std::vector<Match> matches;
     for (std::size_t k = 0; k < frame.cones.size(); ++k) {
@@ -135,29 +126,20 @@ void ConeMemory::associate(const Frame& frame, const std::vector<std::size_t>& n
         remembered_of[match.seen] = match.remembered;
         taken[match.remembered] = true;
     }
-    for (std::size_t k = 0; k < frame.cones.size(); ++k) {
-        const Cone& cone = frame.cones[k];
-        if (remembered_of[k] != kNone) {
-            see(cones_[remembered_of[k]], cone);
-            continue;
-        }
-        RememberedCone fresh;
-        fresh.id = next_id_++;
-        fresh.given = cone.id;
-        fresh.position = cone.position;
-        fresh.confidence = cone.confidence;
-        fresh.last_seen = frame_;
-        ++fresh.colors[static_cast<std::size_t>(cone.color)];
-        cones_.push_back(fresh);
-    }
 }
 
-void ConeMemory::see(RememberedCone& cone, const Cone& seen) const {
-    ++cone.sightings;
-    const double weight = 1.0 / std::min(cone.sightings, settings_.averaged_sightings);
-    cone.position += weight * (seen.position - cone.position);
-    cone.confidence += weight * (seen.confidence - cone.confidence);
-    cone.evidence = std::min(settings_.max_evidence, cone.evidence + 1.0);
+void ConeMemory::see(const Cone& seen, std::size_t remembered) {
+    if (remembered == kNone) {
+        cones_.push_back({.id = next_id_++, .position = seen.position, .confidence = seen.confidence});
+    } else {
+        RememberedCone& cone = cones_[remembered];
+        ++cone.sightings;
+        const double weight = 1.0 / std::min(cone.sightings, settings_.averaged_sightings);
+        cone.position += weight * (seen.position - cone.position);
+        cone.confidence += weight * (seen.confidence - cone.confidence);
+        cone.evidence = std::min(settings_.max_evidence, cone.evidence + 1.0);
+    }
+    RememberedCone& cone = remembered == kNone ? cones_.back() : cones_[remembered];
     cone.last_seen = frame_;
     if (seen.id != kNoId) cone.given = seen.id;
     ++cone.colors[static_cast<std::size_t>(seen.color)];
@@ -165,7 +147,7 @@ void ConeMemory::see(RememberedCone& cone, const Cone& seen) const {
 
 /// Range and bearings of the sensor are not known. Assumption: it sees about as far and as wide as in this
 /// frame.
-void ConeMemory::miss_unseen(const Frame& frame, const std::vector<std::size_t>& near) {
+void ConeMemory::miss_unseen(const Frame& frame, const Indices& near) {
     double widest_rad = 0.0;
     const auto bearing_rad = [&](const Point& place) {
         return std::abs(std::atan2(frame.pose.left_m(place), frame.pose.ahead_m(place)));

@@ -45,13 +45,14 @@ class ConeMemory {
     };
     [[nodiscard]] const std::vector<RememberedCone>& cones() const { return cones_; }
 
-    void clear();
-
   private:
-    std::optional<RigidShift> shift_of(const Frame& frame, const std::vector<std::size_t>& near) const;
-    void associate(const Frame& frame, const std::vector<std::size_t>& near);
-    void see(RememberedCone& cone, const Cone& seen) const;
-    void miss_unseen(const Frame& frame, const std::vector<std::size_t>& near);
+    using Indices = std::vector<std::size_t>;
+    [[nodiscard]] Indices by_id(const Frame& frame, const Indices& near) const;
+    [[nodiscard]] std::optional<RigidShift> shift_of(const Frame& frame, const Indices& near,
+                                                     const Indices& remembered_of) const;
+    void associate(const Frame& frame, const Indices& near, Indices& remembered_of);
+    void see(const Cone& seen, std::size_t remembered);
+    void miss_unseen(const Frame& frame, const Indices& near);
     void forget();
 
     ConeMemorySettings settings_;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 namespace conelane {
 namespace {
@@ -19,27 +18,78 @@ constexpr double kSmoothing_m = 1.0;  ///< of the closed course, see DrivableOpt
 constexpr double kPassed_m = 8.0;
 constexpr double kSeamFade_m = 15.0;  ///< over which the seam between first and last lap is spread
 
-double turn_rad(double from_rad, double to_rad) {
-    return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+/// Sets the arc lengths of a closed lane, from chords, and its length.
+void measure(DrivableLane& ring) {
+    ring.closed = true;
+    ring.length_m = 0.0;
+    for (std::size_t i = 0; i < ring.points.size(); ++i) {
+        ring.points[i].s_m = ring.length_m;
+        const Point& next = ring.points[(i + 1) % ring.points.size()].position;
+        ring.length_m += (next - ring.points[i].position).norm();
+    }
 }
 
-Pose pose_of(const DrivablePoint& point) {
-    return {point.position, point.heading_rad};
+/// The recorded points as a closed lane. Where the newest ones do not meet the oldest ones, these are moved,
+/// less and less with the distance.
+DrivableLane closed_lane(const std::vector<DrivablePoint>& recorded) {
+    DrivableLane ring;
+    ring.points = recorded;
+    const Pose from = pose_of(recorded.back());
+    const Point seam =
+        from.left_m(recorded.front().position) * Point(-from.heading().y(), from.heading().x());
+    for (DrivablePoint& point : ring.points) {
+        const double share = 1.0 - (point.s_m - recorded.front().s_m) / kSeamFade_m;
+        point.position -= std::max(0.0, share) * seam;
+    }
+    measure(ring);
+    return ring;
+}
+
+/// The same lane by a spline near points at about `step_m`, sampled finely.
+DrivableLane smoothed(const DrivableLane& ring, double step_m) {
+    const auto half = static_cast<std::size_t>(std::max(2.0, std::round(ring.length_m / step_m / 2.0)));
+    const std::size_t count = 2 * half;  // an even number, as the spline asks
+    const double spacing_m = ring.length_m / static_cast<double>(count);
+    std::vector<Point> places;
+    for (std::size_t i = 0; i < count; ++i) {
+        places.push_back(point_at(ring, static_cast<double>(i) * spacing_m).position);
+    }
+    const std::vector<double> weights(count, 1.0);
+    SmoothingSpline spline(places, weights, spacing_m, kSmoothing_m, true);
+    for (int round = 0; round < 2; ++round) {
+        spline = SmoothingSpline(places, weights, spacing_m, kSmoothing_m, true, spline.turning_1pm(0.5));
+    }
+    constexpr int kFiner = 4;
+    DrivableLane fine;
+    for (std::size_t i = 0; i < kFiner * count; ++i) {
+        const double at_m = static_cast<double>(i) * spacing_m / kFiner;
+        const SmoothingSpline::Jet jet = spline.at(at_m);
+        const double speed = jet.first.norm();
+        DrivablePoint point = point_at(ring, at_m);
+        point.position = jet.position;
+        point.heading_rad = turning_angle({1.0, 0.0}, jet.first);
+        point.curvature_1pm = speed > 0.0 ? cross(jet.first, jet.second) / (speed * speed * speed) : 0.0;
+        fine.points.push_back(point);
+    }
+    measure(fine);
+    return fine;
+}
+
+/// The same lane at equal steps that divide it.
+DrivableLane evenly_spaced(const DrivableLane& ring, double step_m) {
+    DrivableLane even;
+    even.closed = true;
+    even.length_m = ring.length_m;
+    const auto steps = static_cast<std::size_t>(std::max(3.0, std::round(ring.length_m / step_m)));
+    for (std::size_t i = 0; i < steps; ++i) {
+        const double s_m = static_cast<double>(i) * (ring.length_m / static_cast<double>(steps));
+        even.points.push_back(point_at(ring, s_m));
+        even.points.back().s_m = s_m;
+    }
+    return even;
 }
 
 }  // namespace
-
-void CourseMemory::clear() {
-    points_.clear();
-    closed_ = false;
-}
-
-void CourseMemory::move_along(const RigidShift& shift) {
-    for (DrivablePoint& point : points_) {
-        point.position = shift(point.position);
-        point.heading_rad = std::remainder(point.heading_rad + shift.turn_rad, 2.0 * std::numbers::pi);
-    }
-}
 
 void CourseMemory::record(const DrivableLane& lane) {
     if (lane.points.empty()) return;
@@ -49,7 +99,8 @@ void CourseMemory::record(const DrivableLane& lane) {
         const double on_m = pose_of(last).ahead_m(here.position);
         const double gap_m = (here.position - last.position).norm();
         if (gap_m > kMaxGap_m) {
-            clear();
+            points_.clear();
+            closed_ = false;
         } else if (on_m < settings_.step_m) {
             return;
         } else {
@@ -127,65 +178,7 @@ void CourseMemory::drop_passed(const DrivablePoint& at) {
 
 std::optional<DrivableLane> CourseMemory::course() const {
     if (!closed_ || points_.size() < 8) return std::nullopt;
-    // Where the newest points do not meet the oldest ones, these are moved, less and less with the distance.
-    std::vector<DrivablePoint> ring = points_;
-    const DrivablePoint& newest = points_.back();
-    const Pose from = pose_of(newest);
-    const Point seam = from.left_m(ring.front().position) * Point(-from.heading().y(), from.heading().x());
-    const double begin_m = ring.front().s_m;
-    for (DrivablePoint& point : ring) {
-        point.position -= std::max(0.0, 1.0 - (point.s_m - begin_m) / kSeamFade_m) * seam;
-    }
-    double around_m = 0.0;
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-        ring[i].s_m = around_m;
-        around_m += (ring[(i + 1) % ring.size()].position - ring[i].position).norm();
-    }
-    DrivableLane open;
-    open.points = std::move(ring);
-    open.closed = true;
-    open.length_m = around_m;
-    const auto half = static_cast<std::size_t>(std::max(2.0, std::round(around_m / settings_.step_m / 2.0)));
-    const std::size_t count = 2 * half;  // an even number, as the spline asks
-    const double spacing_m = around_m / static_cast<double>(count);
-    std::vector<Point> places;
-    for (std::size_t i = 0; i < count; ++i) {
-        places.push_back(point_at(open, static_cast<double>(i) * spacing_m).position);
-    }
-    const std::vector<double> weights(count, 1.0);
-    SmoothingSpline spline(places, weights, spacing_m, kSmoothing_m, true);
-    for (int round = 0; round < 2; ++round) {
-        spline = SmoothingSpline(places, weights, spacing_m, kSmoothing_m, true, spline.turning_1pm(0.5));
-    }
-    // Sampled finely, then at equal steps that divide the circuit.
-    constexpr int kFiner = 4;
-    DrivableLane fine;
-    fine.closed = true;
-    for (std::size_t i = 0; i < kFiner * count; ++i) {
-        const double at_m = static_cast<double>(i) * spacing_m / kFiner;
-        const SmoothingSpline::Jet jet = spline.at(at_m);
-        const double speed = jet.first.norm();
-        DrivablePoint point = point_at(open, at_m);
-        point.position = jet.position;
-        point.heading_rad = turning_angle({1.0, 0.0}, jet.first);
-        point.curvature_1pm = speed > 0.0 ? cross(jet.first, jet.second) / (speed * speed * speed) : 0.0;
-        fine.points.push_back(point);
-    }
-    for (std::size_t i = 0; i < fine.points.size(); ++i) {
-        fine.points[i].s_m = fine.length_m;
-        fine.length_m +=
-            (fine.points[(i + 1) % fine.points.size()].position - fine.points[i].position).norm();
-    }
-    DrivableLane course;
-    course.closed = true;
-    course.length_m = fine.length_m;
-    const auto steps = static_cast<std::size_t>(std::max(3.0, std::round(fine.length_m / step_m_)));
-    const double even_m = fine.length_m / static_cast<double>(steps);
-    for (std::size_t i = 0; i < steps; ++i) {
-        course.points.push_back(point_at(fine, static_cast<double>(i) * even_m));
-        course.points.back().s_m = static_cast<double>(i) * even_m;
-    }
-    return course;
+    return evenly_spaced(smoothed(closed_lane(points_), settings_.step_m), step_m_);
 }
 
 DrivableLane CourseMemory::ahead(const Pose& pose, double length_m) const {

@@ -20,8 +20,7 @@ class CourseMemory {
 
     /// Adds the lane at the car. `lane` begins at the car; a lane without points interrupts the record.
     void record(const DrivableLane& lane);
-    void move_along(const RigidShift& shift);
-    void clear();
+    void move_along(const RigidShift& shift) { move(points_, shift); }
 
     [[nodiscard]] bool closed() const { return closed_; }
     /// The circuit from its first recorded point on; absent until it is closed.

@@ -32,8 +32,13 @@ constexpr std::array<std::string_view, 6> kPhases = {"approach", "right 1", "rig
 
 /// Both boundaries of a lane along the x axis.
 void add_lines(KnownCourse& course, double from_x_m, double to_x_m, ConeColor left, ConeColor right) {
-    course.lines.push_back({from_x_m, to_x_m, kKnownHalfWidth_m, 1.0, left});
-    course.lines.push_back({from_x_m, to_x_m, -kKnownHalfWidth_m, -1.0, right});
+    for (const double side : {1.0, -1.0}) {
+        course.lines.push_back({.from_x_m = from_x_m,
+                                .to_x_m = to_x_m,
+                                .y_m = side * kKnownHalfWidth_m,
+                                .outward_y = side,
+                                .color = side > 0.0 ? left : right});
+    }
 }
 
 KnownCourse acceleration() {
@@ -71,8 +76,14 @@ KnownCourse skidpad() {
         const ConeColor inner = side < 0.0 ? ConeColor::yellow : ConeColor::blue;
         const ConeColor outer = side < 0.0 ? ConeColor::blue : ConeColor::yellow;
         const double inner_m = kRadius_m - kKnownHalfWidth_m;
-        course.arcs.push_back({centre, inner_m, -1.0, side, 0.0, inner});
-        course.arcs.push_back({centre, kRadius_m + kKnownHalfWidth_m, 1.0, side, kOtherLane_m, outer});
+        for (const double outward : {-1.0, 1.0}) {
+            course.arcs.push_back({.centre = centre,
+                                   .radius_m = kRadius_m + outward * kKnownHalfWidth_m,
+                                   .outward = outward,
+                                   .side = side,
+                                   .min_aside_m = outward < 0.0 ? 0.0 : kOtherLane_m,
+                                   .color = outward < 0.0 ? inner : outer});
+        }
         for (int i = 0; i < kInnerCones; ++i) {
             const double angle_rad = 2.0 * kPi * i / kInnerCones;
             const Point out(std::sin(angle_rad), -side * std::cos(angle_rad));

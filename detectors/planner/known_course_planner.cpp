@@ -1,11 +1,8 @@
-#include "detectors/planner/known_course_planner.hpp"
-
 #include "conelane/invalid_input.hpp"
-#include "detectors/planner/frame.hpp"
 #include "detectors/planner/known_course.hpp"
 #include "detectors/planner/known_gates.hpp"
 #include "detectors/planner/known_registration.hpp"
-#include "detectors/planner/seen_cones.hpp"
+#include "detectors/planner/planners.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>
@@ -15,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace conelane {
@@ -68,9 +66,88 @@ constexpr double kMinCommon_m = 2.5;
 
 constexpr double kSeenBeyond_m = 5.0;  ///< of the farthest matched cone, a lane is trusted
 
-void validate(const PlannerOptions& options) {
-    if (options.laps) throw InvalidInput("laps", "is for trackdrive and autocross");
-    validate_shared(options);
+/// The course has not been found among the cones yet.
+struct Searching {
+    std::vector<SeenView> views;
+    std::vector<RegistrationFit> contenders;  ///< of this frame
+};
+
+/// The course is registered to the map.
+struct Tracking {
+    Registration registration;
+    GateEvidence gates;           ///< of acceleration
+    double supported_s = 0.0;     ///< time of the last frame whose cones speak for the registration
+    double supported_at_m = 0.0;  ///< where the car was on the route then
+    double seen_ahead_m = 0.0;    ///< of the car then
+    int settling = 0;             ///< frames until the registration is steady
+    int jump_frames = 0;          ///< one after the other that say that the map has jumped
+    double surplus = 1.0;         ///< of cones on boundaries over those beside them, mean of the last frames
+    double taken = 1.0;           ///< share of the places that have their cone, mean of the last frames
+    double line_m = 0.0;          ///< x of the start line in the registration; 0 in skidpad
+    double at_m = 0.0;            ///< of the car on the route
+    double progress_m = 0.0;      ///< the farthest that it was
+    double off_route_m = 0.0;     ///< of the car
+    int frames_after_line = 0;    ///< one after the other
+    double end_m = 0.0;           ///< of the route
+    std::optional<double> closed_x_m = {};  ///< a row of cones across the exit, in coordinates of the route
+
+    /// A place of the map in the coordinates of the route.
+    [[nodiscard]] Point on_route(const Point& in_map) const {
+        return registration.to_course(in_map) - Point(line_m, 0.0);
+    }
+};
+
+/// The last line is crossed; the car comes to rest.
+struct Finished {
+    Tracking tracking;
+};
+
+/// All that a run changes.
+struct Run {
+    std::variant<Searching, Tracking, Finished> state;
+    SeenCones seen;
+    std::optional<double> time_s;  ///< of the last frame
+    Pose first_pose;
+    Pose last_pose;
+    std::size_t last_count = 0;  ///< of cones
+    bool began = false;          ///< a lane was given
+    Plan last;
+
+    /// Null while searching.
+    [[nodiscard]] Tracking* tracking() {
+        if (auto* const finished = std::get_if<Finished>(&state)) return &finished->tracking;
+        return std::get_if<Tracking>(&state);
+    }
+    [[nodiscard]] bool is_finished() const { return std::holds_alternative<Finished>(state); }
+    void finish() {
+        if (auto* const tracking = std::get_if<Tracking>(&state)) state = Finished{Tracking(*tracking)};
+    }
+};
+
+/// A point of the route at a distance from the car, in the map.
+DrivablePoint in_map(DrivablePoint point, const Registration& registration, double s_m, double half_width_m) {
+    point.s_m = s_m;
+    point.position = registration.to_map(point.position);
+    point.heading_rad =
+        std::remainder(point.heading_rad + registration.course.yaw_rad, 2.0 * std::numbers::pi);
+    if (point.heading_rad <= -std::numbers::pi) point.heading_rad = std::numbers::pi;
+    point.width_left_m = point.width_right_m = half_width_m;
+    return point;
+}
+
+/// A cone that stands on a boundary of the lane.
+struct OnBoundary {
+    double x_m;
+    bool left;
+};
+
+bool has_pair(const std::vector<OnBoundary>& beside, double from_x_m, double to_x_m) {
+    const auto has = [&](bool left) {
+        return std::ranges::any_of(beside, [&](const OnBoundary& cone) {
+            return cone.left == left && cone.x_m > from_x_m && cone.x_m < to_x_m;
+        });
+    };
+    return has(true) && has(false);
 }
 
 class KnownCoursePlanner final : public Planner {
@@ -78,218 +155,176 @@ class KnownCoursePlanner final : public Planner {
     explicit KnownCoursePlanner(const PlannerOptions& options)
         : options_(options),
           detector_(make_detector(options.detector, options.detector_options)),
-          known_(known_course(options.mission)),
-          gates_(known_.course().finish_s_m) {}
+          known_(known_course(options.mission)) {}
 
     Plan update(const Frame& frame, const DetectionLimits& limits) override;
     std::optional<DrivableLane> course() const override { return std::nullopt; }
-    void reset() override;
+    void reset() override {
+        detector_->reset();
+        run_ = {};
+    }
 
   private:
     [[nodiscard]] const KnownCourse& shape() const { return known_.course(); }
-    void search(const Frame& frame, const SeenView& view, const Deadline& deadline);
-    void track(const Frame& frame, const SeenView& view, const Deadline& deadline);
-    bool supports(const RegistrationFit& fit);
-    void search_again(const Frame& frame, const SeenView& view, const Deadline& deadline);
-    void find_lines(const Frame& frame, const SeenView& view);
-    void accept(const RegistrationFit& fit, const Frame& frame);
-    void advance(const Pose& pose);
-    /// A place of the map in the coordinates of the route.
-    [[nodiscard]] Point on_route(const Point& in_map) const {
-        return registration_->to_course(in_map) - Point(line_m_, 0.0);
-    }
+    void search(Searching& searching, const Frame& frame, const SeenView& view, const Deadline& deadline);
+    void track(Tracking& tracking, const Frame& frame, const SeenView& view, const Deadline& deadline) const;
+    static bool supports(Tracking& tracking, const RegistrationFit& fit);
+    void search_again(Tracking& tracking, const Frame& frame, const SeenView& view,
+                      const Deadline& deadline) const;
+    void find_lines(Tracking& tracking, const Frame& frame, const SeenView& view) const;
+    [[nodiscard]] bool advance(Tracking& tracking, const Pose& pose) const;
     [[nodiscard]] double nearest_on_route(const Point& place, double from_s_m, double to_s_m) const;
-    void find_closing_cones();
-    [[nodiscard]] DrivableLane route_ahead() const;
-    [[nodiscard]] DrivableLane common_route(const Pose& car, double length_m) const;
-    void plan_registered(Plan& plan, const Frame& frame);
-    void plan_unregistered(Plan& plan, const Scene& scene, const Deadline& deadline);
+    void find_closing_cones(Tracking& tracking) const;
+    [[nodiscard]] DrivableLane route_ahead(const Tracking& tracking) const;
+    [[nodiscard]] DrivableLane common_route(const Searching& searching, const Pose& car,
+                                            double length_m) const;
+    void plan_registered(Tracking& tracking, Plan& plan, double time_s);
+    void plan_unregistered(const Searching& searching, Plan& plan, const Scene& scene,
+                           const Deadline& deadline);
 
     PlannerOptions options_;
     std::unique_ptr<LaneDetector> detector_;
     KnownRegistration known_;
-    GateEvidence gates_;  ///< of acceleration
-
-    SeenCones seen_;
-    std::vector<SeenView> views_;              ///< while searching
-    std::vector<RegistrationFit> contenders_;  ///< of this frame, while searching
-    int settling_ = 0;                         ///< frames until the registration is steady
-    double surplus_ = 1.0;  ///< of cones on boundaries over those beside them, mean of the last frames
-    double taken_ = 1.0;    ///< share of the places that have their cone, mean of the last frames
-    int jump_frames_ = 0;   ///< one after the other that say that the map has jumped
-    std::optional<double> time_s_;
-    Pose first_pose_;
-    Pose last_pose_;
-    std::size_t last_count_ = 0;  ///< of cones
-    std::optional<Registration> registration_;
-    double supported_s_ = 0.0;     ///< time of the last frame whose cones speak for the registration
-    double supported_at_m_ = 0.0;  ///< where the car was on the route then
-    double seen_ahead_m_ = 0.0;    ///< of the car then
-    double line_m_ = 0.0;          ///< x of the start line in the registration; 0 in skidpad
-    double at_m_ = 0.0;            ///< of the car on the route
-    double progress_m_ = 0.0;      ///< the farthest that it was
-    double off_route_m_ = 0.0;     ///< of the car
-    int frames_after_line_ = 0;
-    bool finished_ = false;
-    double end_m_ = 0.0;                ///< of the route
-    std::optional<double> closed_x_m_;  ///< a row of cones across the exit, in coordinates of the route
-    bool began_ = false;                ///< a lane was given
-    Plan last_;
+    Run run_;
 };
-
-void KnownCoursePlanner::reset() {
-    detector_->reset();
-    seen_.clear();
-    views_.clear();
-    contenders_.clear();
-    settling_ = 0;
-    jump_frames_ = 0;
-    time_s_.reset();
-    registration_.reset();
-    gates_.clear();
-    line_m_ = 0.0;
-    frames_after_line_ = 0;
-    finished_ = false;
-    closed_x_m_.reset();
-    began_ = false;
-    last_ = {};
-}
 
 Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limits) {
     const Deadline deadline(limits.time_limit_ms);
     const Scene scene = checked_scene(frame, limits);
-    if (time_s_ && frame.time_s <= *time_s_) {
-        Plan plan = last_;
+    if (run_.time_s && frame.time_s <= *run_.time_s) {
+        Plan plan = run_.last;
         // The same frame again has the same answer; another one says nothing new.
-        const bool is_same = frame.time_s == *time_s_ && frame.pose.position == last_pose_.position &&
-                             frame.cones.size() == last_count_;
+        const bool is_same = frame.time_s == *run_.time_s && frame.pose.position == run_.last_pose.position &&
+                             frame.cones.size() == run_.last_count;
         if (!is_same && plan.state == PlanState::following) plan.state = PlanState::bridging;
         return plan;
     }
-    if (!time_s_) first_pose_ = last_pose_ = frame.pose;
-    time_s_ = frame.time_s;
-    seen_.observe(frame);
+    if (!run_.time_s) run_.first_pose = run_.last_pose = frame.pose;
+    run_.time_s = frame.time_s;
+    run_.seen.observe(frame);
     const SeenView view = view_of(frame);
+    if (Tracking* const tracking = run_.tracking()) {
+        track(*tracking, frame, view, deadline);
+        if (!run_.is_finished()) find_lines(*tracking, frame, view);
+        if (advance(*tracking, frame.pose)) run_.finish();
+    } else {
+        search(std::get<Searching>(run_.state), frame, view, deadline);
+    }
     Plan plan;
-    if (registration_) {
-        track(frame, view, deadline);
-        find_lines(frame, view);
-        advance(frame.pose);
+    if (Tracking* const tracking = run_.tracking()) {
+        plan_registered(*tracking, plan, frame.time_s);
+        plan.phase = shape().phase(run_.is_finished() ? shape().finish_s_m : tracking->progress_m);
+        plan.lap = shape().laps(tracking->progress_m);
     } else {
-        search(frame, view, deadline);
+        plan_unregistered(std::get<Searching>(run_.state), plan, scene, deadline);
+        plan.phase = shape().phase(shape().start_x_m);
     }
-    if (registration_) {
-        plan_registered(plan, frame);
-    } else {
-        plan_unregistered(plan, scene, deadline);
-    }
-    plan.phase = registration_ ? shape().phase(finished_ ? shape().finish_s_m : progress_m_)
-                               : shape().phase(shape().start_x_m);
-    plan.lap = registration_ ? shape().laps(progress_m_) : 0;
-    last_pose_ = frame.pose;
-    last_count_ = frame.cones.size();
-    last_ = plan;
+    run_.last_pose = frame.pose;
+    run_.last_count = frame.cones.size();
+    run_.last = plan;
     return plan;
 }
 
-void KnownCoursePlanner::search(const Frame& frame, const SeenView& view, const Deadline& deadline) {
-    if (views_.size() == kMaxViews) views_.erase(views_.begin() + 1);
-    views_.push_back(view);
-    contenders_.clear();
+/// Goes on to tracking where one registration alone explains the cones.
+void KnownCoursePlanner::search(Searching& searching, const Frame& frame, const SeenView& view,
+                                const Deadline& deadline) {
+    if (searching.views.size() == kMaxViews) searching.views.erase(searching.views.begin() + 1);
+    searching.views.push_back(view);
+    searching.contenders.clear();
     if (frame.cones.empty()) return;
     // The car is expected where it has driven to since the first frame, straight on.
-    const double driven_m = first_pose_.ahead_m(frame.pose.position);
-    Pose expected{{shape().start_x_m + driven_m, 0.0}, 0.0};
-    contenders_ = known_.contenders(seen_.cones(), views_, frame.pose, expected, {}, deadline);
-    if (contenders_.size() == 1) {
-        end_m_ = shape().end_s_m;
-        accept(contenders_.front(), frame);
-        find_lines(frame, view);
-        const double x_m = registration_->to_course(frame.pose.position).x() - line_m_;
-        at_m_ = progress_m_ = shape().has_place_along ? std::min(x_m, 0.0) : x_m;
-        advance(frame.pose);
-        supported_at_m_ = at_m_;
-        views_.clear();
-        contenders_.clear();
-    }
+    const double driven_m = run_.first_pose.ahead_m(frame.pose.position);
+    const Pose expected{{shape().start_x_m + driven_m, 0.0}, 0.0};
+    searching.contenders =
+        known_.contenders(run_.seen.cones(), searching.views, frame.pose, expected, {}, deadline);
+    if (searching.contenders.size() != 1) return;
+    const RegistrationFit& fit = searching.contenders.front();
+    Tracking tracking{.registration = fit.registration,
+                      .gates = GateEvidence(shape().finish_s_m),
+                      .supported_s = frame.time_s,
+                      .seen_ahead_m = fit.farthest_m,
+                      .settling = kSettlingFrames,
+                      .end_m = shape().end_s_m};
+    find_lines(tracking, frame, view);
+    const double x_m = tracking.on_route(frame.pose.position).x();
+    tracking.at_m = tracking.progress_m = shape().has_place_along ? std::min(x_m, 0.0) : x_m;
+    const bool is_finished = advance(tracking, frame.pose);
+    tracking.supported_at_m = tracking.at_m;
+    run_.state = std::move(tracking);
+    if (is_finished) run_.finish();
 }
 
-void KnownCoursePlanner::accept(const RegistrationFit& fit, const Frame& frame) {
-    registration_ = fit.registration;
-    supported_s_ = frame.time_s;
-    seen_ahead_m_ = fit.farthest_m;
-    settling_ = kSettlingFrames;
-    jump_frames_ = 0;
-    surplus_ = 1.0;
-    taken_ = 1.0;
-}
-
-bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
+bool KnownCoursePlanner::supports(Tracking& tracking, const RegistrationFit& fit) {
     // By chance as many cones lie on boundaries as beside them; now and then more in one frame.
     if (fit.matched + fit.beside > 0) {
         const double surplus = static_cast<double>(fit.matched - fit.beside) / (fit.matched + fit.beside);
-        surplus_ += kSurplusGain * (surplus - surplus_);
+        tracking.surplus += kSurplusGain * (surplus - tracking.surplus);
     }
     if (fit.places >= kMinPlaces) {
         const double share = static_cast<double>(fit.taken) / fit.places;
-        taken_ += kSurplusGain * (share - taken_);
+        tracking.taken += kSurplusGain * (share - tracking.taken);
     }
     // Cones of the course may be missing, and false ones stand beside it; both at once is too much.
-    return fit.matched >= kMinMatched && off_route_m_ < kMaxOffRoute_m && surplus_ + taken_ > kMinSupport;
+    return fit.matched >= kMinMatched && tracking.off_route_m < kMaxOffRoute_m &&
+           tracking.surplus + tracking.taken > kMinSupport;
 }
 
-void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const Deadline& deadline) {
+void KnownCoursePlanner::track(Tracking& tracking, const Frame& frame, const SeenView& view,
+                               const Deadline& deadline) const {
     if (frame.cones.empty()) return;
     // This frame alone: after a jump of the map, cones of earlier frames are elsewhere.
     SeenCones now;
     now.observe(frame);
     const auto refined = [&](const Stiffness& stiffness) {
-        return known_.fit(known_.refine(*registration_, now.cones(), frame.pose.position, stiffness),
+        return known_.fit(known_.refine(tracking.registration, now.cones(), frame.pose.position, stiffness),
                           now.cones(), {&view, 1}, frame.pose);
     };
-    RegistrationFit fit = refined(settling_ > 0 ? kSettling : kSteady);
+    RegistrationFit fit = refined(tracking.settling > 0 ? kSettling : kSteady);
     const RegistrationFit moved = refined({});
     const bool jumped = moved.score > fit.score + std::max(kJumpGain, kJumpGainShare * fit.score);
-    jump_frames_ = jumped ? jump_frames_ + 1 : 0;
-    if (jump_frames_ >= kJumpFrames) {
+    tracking.jump_frames = jumped ? tracking.jump_frames + 1 : 0;
+    if (tracking.jump_frames >= kJumpFrames) {
         fit = moved;
-        jump_frames_ = 0;
-        settling_ = kSettlingFrames;
+        tracking.jump_frames = 0;
+        tracking.settling = kSettlingFrames;
     }
-    if (!supports(fit)) {
-        if (frame.time_s - supported_s_ > kSearchAgain_s) search_again(frame, view, deadline);
+    if (!supports(tracking, fit)) {
+        if (frame.time_s - tracking.supported_s > kSearchAgain_s)
+            search_again(tracking, frame, view, deadline);
         return;
     }
-    settling_ = std::max(settling_ - 1, 0);
-    registration_ = fit.registration;
-    supported_s_ = frame.time_s;
-    seen_ahead_m_ = fit.farthest_m;
+    tracking.settling = std::max(tracking.settling - 1, 0);
+    tracking.registration = fit.registration;
+    tracking.supported_s = frame.time_s;
+    tracking.seen_ahead_m = fit.farthest_m;
 }
 
-void KnownCoursePlanner::find_lines(const Frame& frame, const SeenView& view) {
-    if (shape().has_place_along || finished_ || frame.cones.empty()) return;
-    gates_.observe(*registration_, frame, view);
-    const double moved_m = gates_.start_line_m() - line_m_;
-    line_m_ += moved_m;
-    at_m_ -= moved_m;
-    progress_m_ -= moved_m;
-    supported_at_m_ -= moved_m;
-    if (closed_x_m_) *closed_x_m_ -= moved_m;
+void KnownCoursePlanner::find_lines(Tracking& tracking, const Frame& frame, const SeenView& view) const {
+    if (shape().has_place_along || frame.cones.empty()) return;
+    tracking.gates.observe(tracking.registration, frame, view);
+    const double moved_m = tracking.gates.start_line_m() - tracking.line_m;
+    tracking.line_m += moved_m;
+    tracking.at_m -= moved_m;
+    tracking.progress_m -= moved_m;
+    tracking.supported_at_m -= moved_m;
+    if (tracking.closed_x_m) *tracking.closed_x_m -= moved_m;
 }
 
-void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view, const Deadline& deadline) {
-    const Registration& old = *registration_;
+void KnownCoursePlanner::search_again(Tracking& tracking, const Frame& frame, const SeenView& view,
+                                      const Deadline& deadline) const {
+    const Registration& old = tracking.registration;
     const Pose expected{old.to_course(frame.pose.position), frame.pose.yaw_rad - old.course.yaw_rad};
     SeenCones now;
     now.observe(frame);
-    if (const auto found = known_.search(now.cones(), {&view, 1}, frame.pose, expected,
-                                         {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35}, deadline)) {
-        // The next frame has to confirm it: among enough cones some registration fits one frame by chance.
-        registration_ = found->registration;
-        settling_ = kSettlingFrames;
-        jump_frames_ = 0;
-        surplus_ = taken_ = 0.5 * kMinSupport;
-    }
+    const std::vector<RegistrationFit> found =
+        known_.contenders(now.cones(), {&view, 1}, frame.pose, expected,
+                          {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35}, deadline);
+    if (found.size() != 1) return;
+    // The next frame has to confirm it: among enough cones some registration fits one frame by chance.
+    tracking.registration = found.front().registration;
+    tracking.settling = kSettlingFrames;
+    tracking.jump_frames = 0;
+    tracking.surplus = tracking.taken = 0.5 * kMinSupport;
 }
 
 double KnownCoursePlanner::nearest_on_route(const Point& place, double from_s_m, double to_s_m) const {
@@ -308,106 +343,89 @@ double KnownCoursePlanner::nearest_on_route(const Point& place, double from_s_m,
     return nearest_m + std::clamp(rest_m, -kProgressStep_m, kProgressStep_m);
 }
 
-void KnownCoursePlanner::advance(const Pose& pose) {
-    const Point place = on_route(pose.position);
-    const double driven_m = std::min((pose.position - last_pose_.position).norm(), kMaxDriven_m);
-    at_m_ = nearest_on_route(place, at_m_ - kWindow_m - kWindowShare * driven_m,
-                             at_m_ + kWindow_m + (1.0 + kWindowShare) * driven_m);
-    off_route_m_ = (shape().at(at_m_).position - place).norm();
-    progress_m_ = std::max(progress_m_, at_m_);
-    const double after_m = at_m_ - shape().finish_s_m;
-    const bool has_seen_line = shape().has_place_along || gates_.has_seen_finish();
+/// Moves the car on along the route. Returns whether it has crossed the last line.
+bool KnownCoursePlanner::advance(Tracking& tracking, const Pose& pose) const {
+    const Point place = tracking.on_route(pose.position);
+    const double driven_m = std::min((pose.position - run_.last_pose.position).norm(), kMaxDriven_m);
+    tracking.at_m = nearest_on_route(place, tracking.at_m - kWindow_m - kWindowShare * driven_m,
+                                     tracking.at_m + kWindow_m + (1.0 + kWindowShare) * driven_m);
+    tracking.off_route_m = (shape().at(tracking.at_m).position - place).norm();
+    tracking.progress_m = std::max(tracking.progress_m, tracking.at_m);
+    const double after_m = tracking.at_m - shape().finish_s_m;
+    const bool has_seen_line = shape().has_place_along || tracking.gates.has_seen_finish();
     const double unseen_m = has_seen_line ? 0.0 : kUnseenLine_m;
-    frames_after_line_ = after_m >= kAfterLine_m + unseen_m ? frames_after_line_ + 1 : 0;
-    if (frames_after_line_ >= 2 || after_m >= kSurelyAfterLine_m + unseen_m) finished_ = true;
+    tracking.frames_after_line = after_m >= kAfterLine_m + unseen_m ? tracking.frames_after_line + 1 : 0;
+    return tracking.frames_after_line >= 2 || after_m >= kSurelyAfterLine_m + unseen_m;
 }
 
-void KnownCoursePlanner::find_closing_cones() {
-    if (at_m_ < shape().finish_s_m - shape().max_ahead_m) return;
+void KnownCoursePlanner::find_closing_cones(Tracking& tracking) const {
+    if (tracking.at_m < shape().finish_s_m - shape().max_ahead_m) return;
     // In course coordinates x is the route before and after the line, the circles left out.
     const double line_x_m = shape().at(shape().finish_s_m).position.x();
-    const double car_x_m = shape().at(at_m_).position.x();
-    const double half_m = kKnownHalfWidth_m + registration_->widening_m;
-    struct OnBoundary {
-        double x_m;
-        bool left;
-    };
+    const double car_x_m = shape().at(tracking.at_m).position.x();
+    const double half_m = kKnownHalfWidth_m + tracking.registration.widening_m;
     std::vector<OnBoundary> beside;
-    for (const SeenCone& cone : seen_.cones()) {
-        const Point place = on_route(cone.position);
+    for (const SeenCone& cone : run_.seen.cones()) {
+        const Point place = tracking.on_route(cone.position);
         if (cone.sightings < kMinClosingSightings || std::abs(std::abs(place.y()) - half_m) > 0.6) continue;
         beside.push_back({place.x(), place.y() > 0.0});
     }
-    const auto has_pair = [&](double from_x_m, double to_x_m) {
-        const auto has = [&](bool left) {
-            return std::ranges::any_of(beside, [&](const OnBoundary& cone) {
-                return cone.left == left && cone.x_m > from_x_m && cone.x_m < to_x_m;
-            });
-        };
-        return has(true) && has(false);
-    };
     const double infinity_m = std::numeric_limits<double>::infinity();
-    if (closed_x_m_ && has_pair(*closed_x_m_ + kRow_m, infinity_m)) closed_x_m_.reset();
-    for (const SeenCone& middle : seen_.cones()) {
-        const Point place = on_route(middle.position);
+    std::optional<double>& closed_x_m = tracking.closed_x_m;
+    if (closed_x_m && has_pair(beside, *closed_x_m + kRow_m, infinity_m)) closed_x_m.reset();
+    for (const SeenCone& middle : run_.seen.cones()) {
+        const Point place = tracking.on_route(middle.position);
         if (middle.sightings < kMinClosingSightings || std::abs(place.y()) > kMiddle * half_m) continue;
         if (middle.color == ConeColor::blue || middle.color == ConeColor::yellow) continue;
         if (place.x() < line_x_m + kClosedAfter_m || place.x() < car_x_m + kBeforeClosing_m) continue;
         // A row across, and no lane behind it.
-        if (!has_pair(place.x() - 0.7, place.x() + 0.7)) continue;
-        if (has_pair(place.x() + kRow_m, infinity_m)) continue;
-        closed_x_m_ = std::min(closed_x_m_.value_or(infinity_m), place.x());
+        if (!has_pair(beside, place.x() - 0.7, place.x() + 0.7)) continue;
+        if (has_pair(beside, place.x() + kRow_m, infinity_m)) continue;
+        closed_x_m = std::min(closed_x_m.value_or(infinity_m), place.x());
     }
-    end_m_ = shape().end_s_m;
-    if (closed_x_m_) {
-        end_m_ = std::min(end_m_, shape().finish_s_m + *closed_x_m_ - line_x_m - kBeforeClosing_m);
+    tracking.end_m = shape().end_s_m;
+    if (closed_x_m) {
+        tracking.end_m =
+            std::min(tracking.end_m, shape().finish_s_m + *closed_x_m - line_x_m - kBeforeClosing_m);
     }
 }
 
-DrivableLane KnownCoursePlanner::route_ahead() const {
+DrivableLane KnownCoursePlanner::route_ahead(const Tracking& tracking) const {
     DrivableLane lane;
     const double step_m = options_.drivable.step_m;
-    const double to_go_m = end_m_ - at_m_;
-    lane.length_m = finished_ ? std::max(to_go_m, 0.0) : std::clamp(to_go_m, 0.0, shape().max_ahead_m);
+    const double to_go_m = tracking.end_m - tracking.at_m;
+    lane.length_m =
+        run_.is_finished() ? std::max(to_go_m, 0.0) : std::clamp(to_go_m, 0.0, shape().max_ahead_m);
     // A lane is as wide as the rules say, or as the cones of a straight lane show.
     const double half_m = options_.mission == Mission::acceleration
-                              ? kKnownHalfWidth_m + registration_->widening_m
+                              ? kKnownHalfWidth_m + tracking.registration.widening_m
                               : kKnownHalfWidth_m;
     const auto steps = static_cast<std::size_t>(std::floor(lane.length_m / step_m + 1e-9));
     if (steps == 0) return {};
     for (std::size_t i = 0; i <= steps; ++i) {
         const double s_m = static_cast<double>(i) * step_m;
-        DrivablePoint point = shape().at(at_m_ + s_m);
-        point.s_m = s_m;
-        point.position = registration_->to_map(point.position + Point(line_m_, 0.0));
-        point.heading_rad =
-            std::remainder(point.heading_rad + registration_->course.yaw_rad, 2.0 * std::numbers::pi);
-        if (point.heading_rad <= -std::numbers::pi) point.heading_rad = std::numbers::pi;
-        point.width_left_m = point.width_right_m = half_m;
-        lane.points.push_back(point);
+        DrivablePoint point = shape().at(tracking.at_m + s_m);
+        point.position += Point(tracking.line_m, 0.0);
+        lane.points.push_back(in_map(point, tracking.registration, s_m, half_m));
     }
     return lane;
 }
 
 /// The route by the best contender, as far as all of them agree on it.
-DrivableLane KnownCoursePlanner::common_route(const Pose& car, double length_m) const {
+DrivableLane KnownCoursePlanner::common_route(const Searching& searching, const Pose& car,
+                                              double length_m) const {
     DrivableLane lane;
-    if (contenders_.empty()) return lane;
+    const std::vector<RegistrationFit>& contenders = searching.contenders;
+    if (contenders.empty()) return lane;
     const auto point_at = [&](const Registration& registration, double s_m) {
-        DrivablePoint point = shape().at(registration.to_course(car.position).x() + s_m);
-        point.s_m = s_m;
-        point.position = registration.to_map(point.position);
-        point.heading_rad =
-            std::remainder(point.heading_rad + registration.course.yaw_rad, 2.0 * std::numbers::pi);
-        if (point.heading_rad <= -std::numbers::pi) point.heading_rad = std::numbers::pi;
-        point.width_left_m = point.width_right_m = kKnownHalfWidth_m;
-        return point;
+        return in_map(shape().at(registration.to_course(car.position).x() + s_m), registration, s_m,
+                      kKnownHalfWidth_m);
     };
     const double step_m = options_.drivable.step_m;
     for (int i = 0; i * step_m <= length_m; ++i) {
-        const DrivablePoint point = point_at(contenders_.front().registration, i * step_m);
-        const bool all_agree = std::ranges::all_of(contenders_, [&](const RegistrationFit& other) {
-            if (other.score < kLikely * contenders_.front().score) return true;
+        const DrivablePoint point = point_at(contenders.front().registration, i * step_m);
+        const bool all_agree = std::ranges::all_of(contenders, [&](const RegistrationFit& other) {
+            if (other.score < kLikely * contenders.front().score) return true;
             return (point_at(other.registration, i * step_m).position - point.position).norm() < kAgreed_m;
         });
         if (!all_agree) break;
@@ -419,64 +437,62 @@ DrivableLane KnownCoursePlanner::common_route(const Pose& car, double length_m) 
     return lane;
 }
 
-void KnownCoursePlanner::plan_registered(Plan& plan, const Frame& frame) {
-    plan.age_s = frame.time_s - supported_s_;
-    const bool old = plan.age_s > 0.0;
-    if (!old) supported_at_m_ = at_m_;
-    if (finished_ || at_m_ > shape().finish_s_m - shape().max_ahead_m) find_closing_cones();
-    plan.stop = finished_;
-    if (plan.age_s > options_.max_age_s || off_route_m_ > kMaxOffRoute_m) {
-        plan.state = finished_ ? PlanState::finished : PlanState::lost;
+void KnownCoursePlanner::plan_registered(Tracking& tracking, Plan& plan, double time_s) {
+    const bool is_finished = run_.is_finished();
+    plan.age_s = time_s - tracking.supported_s;
+    const bool is_old = plan.age_s > 0.0;
+    if (!is_old) tracking.supported_at_m = tracking.at_m;
+    if (is_finished || tracking.at_m > shape().finish_s_m - shape().max_ahead_m) find_closing_cones(tracking);
+    plan.stop = is_finished;
+    if (plan.age_s > options_.max_age_s || tracking.off_route_m > kMaxOffRoute_m) {
+        plan.state = is_finished ? PlanState::finished : PlanState::lost;
         // Behind the last line there may be no cone: what is left of the lane is straight on.
-        if (!finished_ || off_route_m_ > kMaxOffRoute_m) return;
+        if (!is_finished || tracking.off_route_m > kMaxOffRoute_m) return;
     } else {
-        plan.state = finished_ ? PlanState::finished : old ? PlanState::bridging : PlanState::following;
+        plan.state = is_finished ? PlanState::finished : is_old ? PlanState::bridging : PlanState::following;
     }
-    plan.lane = route_ahead();
-    const double trusted_m = seen_ahead_m_ + kSeenBeyond_m - (at_m_ - supported_at_m_);
+    plan.lane = route_ahead(tracking);
+    const double trusted_m =
+        tracking.seen_ahead_m + kSeenBeyond_m - (tracking.at_m - tracking.supported_at_m);
     plan.safe_m = std::clamp(trusted_m, 0.0, plan.lane.length_m);
     if (!plan.lane.points.empty()) plan.lane.trusted_m = plan.safe_m;
-    began_ = true;
+    run_.began = true;
 }
 
-void KnownCoursePlanner::plan_unregistered(Plan& plan, const Scene& scene, const Deadline& deadline) {
-    plan.state = began_ ? PlanState::lost : PlanState::searching;
-    const double driven_m = (scene.pose.position - first_pose_.position).norm();
+void KnownCoursePlanner::plan_unregistered(const Searching& searching, Plan& plan, const Scene& scene,
+                                           const Deadline& deadline) {
+    plan.state = run_.began ? PlanState::lost : PlanState::searching;
+    const double driven_m = (scene.pose.position - run_.first_pose.position).norm();
     const double left_m = kUnregistered_m - driven_m;
     if (left_m <= 0.0 || scene.cones.size() < kMinDrawnTogether) return;
-    if (views_.size() >= kViewsBeforeCommon) {
-        plan.lane = common_route(scene.pose, left_m);
-        if (!plan.lane.points.empty()) {
-            plan.state = PlanState::following;
-            plan.safe_m = plan.lane.length_m;
-            began_ = true;
-            return;
-        }
+    DrivableLane lane;
+    if (searching.views.size() >= kViewsBeforeCommon) lane = common_route(searching, scene.pose, left_m);
+    if (lane.points.empty()) {
+        plan.answer = detector_->detect(scene, {.time_limit_ms = std::max(deadline.remaining_ms(), 0.0)});
+        lane = drivable(plan.answer, scene, options_.drivable);
+        if (lane.points.size() < 2 || lane.closed) return;
+        // Only where the lane begins at the car and goes on straight.
+        if ((lane.points.front().position - scene.pose.position).norm() > kKnownHalfWidth_m) return;
+        const double trusted_m = std::min(left_m, lane.trusted_m.value_or(0.0));
+        std::erase_if(lane.points, [&](const DrivablePoint& point) {
+            const double turned_rad =
+                std::remainder(point.heading_rad - scene.pose.yaw_rad, 2.0 * std::numbers::pi);
+            return point.s_m > trusted_m || std::abs(turned_rad) > kMaxStartTurn_rad;
+        });
+        if (lane.points.size() < 2) return;
+        lane.trusted_m = lane.length_m = lane.points.back().s_m;
     }
-    plan.answer = detector_->detect(scene, {.time_limit_ms = std::max(deadline.remaining_ms(), 0.0)});
-    DrivableLane lane = drivable(plan.answer, scene, options_.drivable);
-    if (lane.points.size() < 2 || lane.closed) return;
-    const DrivablePoint& first = lane.points.front();
-    // Only where the lane begins at the car and goes on straight.
-    if ((first.position - scene.pose.position).norm() > kKnownHalfWidth_m) return;
-    const double trusted_m = std::min(left_m, lane.trusted_m.value_or(0.0));
-    std::erase_if(lane.points, [&](const DrivablePoint& point) {
-        return point.s_m > trusted_m || std::abs(std::remainder(point.heading_rad - scene.pose.yaw_rad,
-                                                                2.0 * std::numbers::pi)) > kMaxStartTurn_rad;
-    });
-    if (lane.points.size() < 2) return;
-    lane.length_m = lane.points.back().s_m;
-    lane.trusted_m = lane.length_m;
     plan.state = PlanState::following;
     plan.safe_m = lane.length_m;
     plan.lane = std::move(lane);
-    began_ = true;
+    run_.began = true;
 }
 
 }  // namespace
 
 std::unique_ptr<Planner> make_known_course_planner(const PlannerOptions& options) {
-    validate(options);
+    if (options.laps) throw InvalidInput("laps", "is for trackdrive and autocross");
+    validate_shared(options);
     return std::make_unique<KnownCoursePlanner>(options);
 }
 

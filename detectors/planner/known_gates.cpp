@@ -39,18 +39,10 @@ bool GateEvidence::Place::is_known() const {
 }
 
 GateEvidence::GateEvidence(double finish_m) : finish_m_(finish_m) {
-    clear();
-}
-
-void GateEvidence::clear() {
-    range_m_ = bearing_rad_ = 0.0;
-    start_line_m_ = 0.0;
-    has_seen_finish_ = false;
-    for (std::vector<Place>* places : {&start_, &finish_}) {
-        const double middle_m = places == &start_ ? 0.0 : finish_m_;
-        places->clear();
-        const int steps = static_cast<int>(std::lround(kReach_m / kStep_m));
-        for (int i = -steps; i <= steps; ++i) places->push_back({middle_m + i * kStep_m});
+    const int steps = static_cast<int>(std::lround(kReach_m / kStep_m));
+    for (int i = -steps; i <= steps; ++i) {
+        start_.push_back({i * kStep_m});
+        finish_.push_back({finish_m + i * kStep_m});
     }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "detectors/planner/known_registration.hpp"
-#include "detectors/planner/seen_cones.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -25,8 +24,6 @@ class GateEvidence {
     [[nodiscard]] double start_line_m() const { return start_line_m_; }
     /// Whether a gate was seen at the finish that belongs to start_line_m().
     [[nodiscard]] bool has_seen_finish() const { return has_seen_finish_; }
-
-    void clear();
 
   private:
     /// Evidence at one place along the lane.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -20,6 +21,15 @@ constexpr double kMinMargin = 1.5;  ///< to the next distinct registration
 constexpr double kMinMarginShare = 0.2;
 constexpr double kDistinct_m = 0.7;  ///< registrations that differ by more, at the car
 constexpr double kDistinct_rad = 0.09;
+
+// What is seen.
+constexpr double kSameCone_m = 0.45;
+constexpr int kAveragedSightings = 20;
+constexpr double kForgotten_s = 3.0;
+constexpr std::size_t kMaxCones = 600;
+constexpr double kMaxDistance_m = 45.0;  ///< cones of a map that are farther from the car are left out
+constexpr double kSureShare = 0.8;       ///< of range and bearing: a cone within is in view
+constexpr double kBlind_m = 2.0;
 
 // The search over a grid of poses.
 constexpr double kCell_m = 0.25;
@@ -55,7 +65,89 @@ std::vector<SeenCone> nearest_to(const Point& car, std::span<const SeenCone> con
     return nearest;
 }
 
+/// The candidates of the highest scores. One stands for its neighbourhood: the best.
+class BestCandidates {
+  public:
+    explicit BestCandidates(const Point& car) : car_(car) {}
+
+    [[nodiscard]] bool takes(double score) const {
+        return best_.size() < kMaxCandidates || score > best_.back().score;
+    }
+    void add(const RegistrationFit& candidate) {
+        const auto place = std::ranges::find_if(
+            best_, [&](const RegistrationFit& other) { return candidate.score > other.score; });
+        const auto near = [&](const RegistrationFit& other) {
+            const Registration& a = candidate.registration;
+            const Registration& b = other.registration;
+            return std::abs(a.course.yaw_rad - b.course.yaw_rad) < 2.5 * kStep_rad &&
+                   (a.to_course(car_) - b.to_course(car_)).norm() < 2.5 * kStep_m;
+        };
+        if (std::any_of(best_.begin(), place, near)) return;
+        const auto from = best_.insert(place, candidate) + 1;
+        best_.erase(std::remove_if(from, best_.end(), near), best_.end());
+        if (best_.size() > kMaxCandidates) best_.pop_back();
+    }
+    [[nodiscard]] std::vector<RegistrationFit> take() { return std::move(best_); }
+
+  private:
+    Point car_;
+    std::vector<RegistrationFit> best_;
+};
+
+/// The moves of the car along and across the course that a search tries.
+std::vector<Point> moves_within(const SearchReach& reach, bool along) {
+    const int aheads = along ? static_cast<int>(std::ceil(reach.ahead_m / kStep_m)) : 0;
+    const int lefts = static_cast<int>(std::ceil(reach.left_m / kStep_m));
+    std::vector<Point> moves;
+    for (int ahead = -aheads; ahead <= aheads; ++ahead) {
+        for (int left = -lefts; left <= lefts; ++left) moves.emplace_back(ahead * kStep_m, left * kStep_m);
+    }
+    return moves;
+}
+
 }  // namespace
+
+bool SeenView::covers(const Point& place) const {
+    const double ahead_m = pose.ahead_m(place);
+    const double left_m = pose.left_m(place);
+    const double distance_m = std::hypot(ahead_m, left_m);
+    return distance_m > kBlind_m && distance_m < kSureShare * range_m &&
+           std::abs(std::atan2(left_m, ahead_m)) < kSureShare * bearing_rad;
+}
+
+SeenView view_of(const Frame& frame) {
+    SeenView view{frame.pose};
+    for (const Cone& cone : frame.cones) {
+        const double ahead_m = frame.pose.ahead_m(cone.position);
+        const double left_m = frame.pose.left_m(cone.position);
+        view.range_m = std::max(view.range_m, std::hypot(ahead_m, left_m));
+        view.bearing_rad = std::max(view.bearing_rad, std::abs(std::atan2(left_m, ahead_m)));
+    }
+    return view;
+}
+
+void SeenCones::observe(const Frame& frame) {
+    std::erase_if(cones_, [&](const SeenCone& cone) { return cone.last_s < frame.time_s - kForgotten_s; });
+    for (const Cone& cone : frame.cones) {
+        if (!((cone.position - frame.pose.position).norm() < kMaxDistance_m)) continue;
+        SeenCone* same = nullptr;
+        double nearest_m = kSameCone_m;
+        for (SeenCone& seen : cones_) {
+            const double distance_m = (seen.position - cone.position).norm();
+            if (distance_m >= nearest_m) continue;
+            nearest_m = distance_m;
+            same = &seen;
+        }
+        if (same == nullptr) {
+            if (cones_.size() < kMaxCones) cones_.push_back({cone.position, cone.color, 1, frame.time_s});
+            continue;
+        }
+        same->sightings = std::min(same->sightings + 1, kAveragedSightings);
+        same->position += (cone.position - same->position) / same->sightings;
+        if (cone.color != ConeColor::unknown) same->color = cone.color;
+        same->last_s = frame.time_s;
+    }
+}
 
 Point Registration::to_course(const Point& in_map) const {
     return {course.ahead_m(in_map), course.left_m(in_map)};
@@ -102,67 +194,45 @@ KnownRegistration::Raster KnownRegistration::raster(double widening_m) const {
     return result;
 }
 
+float KnownRegistration::nearness(const Raster& raster, std::span<const Point> in_cells,
+                                  const Point& moved_cells) const {
+    float sum = 0.0F;
+    for (const Point& cone : in_cells) {
+        const double x = cone.x() + moved_cells.x();
+        const double y = cone.y() + moved_cells.y();
+        if (x < 0.0 || y < 0.0 || x >= columns_ || y >= rows_) continue;
+        sum +=
+            raster.nearness[static_cast<std::size_t>(static_cast<int>(y) * columns_ + static_cast<int>(x))];
+    }
+    return sum;
+}
+
 std::vector<RegistrationFit> KnownRegistration::candidates(std::span<const SeenCone> cones, const Pose& car,
                                                            const Pose& expected, const SearchReach& reach,
                                                            const Deadline& deadline) const {
-    std::vector<RegistrationFit> best;
-    const auto keep = [&](const RegistrationFit& candidate) {
-        if (best.size() == kMaxCandidates && candidate.score <= best.back().score) return;
-        const auto place = std::ranges::find_if(
-            best, [&](const RegistrationFit& other) { return candidate.score > other.score; });
-        // One candidate stands for its neighborhood: the best.
-        const auto near = [&](const RegistrationFit& other) {
-            return std::abs(candidate.registration.course.yaw_rad - other.registration.course.yaw_rad) <
-                       2.5 * kStep_rad &&
-                   (candidate.registration.to_course(car.position) -
-                    other.registration.to_course(car.position))
-                           .norm() < 2.5 * kStep_m;
-        };
-        if (std::any_of(best.begin(), place, near)) return;
-        const auto from = best.insert(place, candidate) + 1;
-        best.erase(std::remove_if(from, best.end(), near), best.end());
-        if (best.size() > kMaxCandidates) best.pop_back();
-    };
-    std::vector<Point> turned(cones.size());
+    BestCandidates best(car.position);
+    const std::vector<Point> moves = moves_within(reach, course_.has_place_along);
+    std::vector<Point> in_cells(cones.size());  // the cones, by one heading of the car in the course
     const int yaws = static_cast<int>(std::ceil(reach.yaw_rad / kStep_rad));
-    const int aheads = course_.has_place_along ? static_cast<int>(std::ceil(reach.ahead_m / kStep_m)) : 0;
-    const int lefts = static_cast<int>(std::ceil(reach.left_m / kStep_m));
     for (int yaw = -yaws; yaw <= yaws; ++yaw) {
         if (deadline.passed()) return {};
-        // The heading of the car in the course.
         const double heading_rad = expected.yaw_rad + yaw * kStep_rad;
-        for (std::size_t i = 0; i < cones.size(); ++i) {
-            turned[i] = (rotated(cones[i].position - car.position, heading_rad - car.yaw_rad) +
-                         expected.position - raster_from_) /
-                        kCell_m;
-        }
-        for (int ahead = -aheads; ahead <= aheads; ++ahead) {
-            for (int left = -lefts; left <= lefts; ++left) {
-                const Point moved(ahead * kStep_m, left * kStep_m);
-                const Point cells = moved / kCell_m;
-                for (const Raster& raster : rasters_) {
-                    float score = 0.0F;
-                    for (const Point& cone : turned) {
-                        const double x = cone.x() + cells.x();
-                        const double y = cone.y() + cells.y();
-                        if (x < 0.0 || y < 0.0 || x >= columns_ || y >= rows_) continue;
-                        score += raster.nearness[static_cast<std::size_t>(static_cast<int>(y) * columns_ +
-                                                                          static_cast<int>(x))];
-                    }
-                    if (best.size() == kMaxCandidates && score <= best.back().score) continue;
-                    RegistrationFit candidate;
-                    candidate.score = score;
-                    candidate.registration.widening_m = raster.widening_m;
-                    candidate.registration.course.yaw_rad = car.yaw_rad - heading_rad;
-                    candidate.registration.course.position =
-                        car.position -
-                        rotated(expected.position + moved, candidate.registration.course.yaw_rad);
-                    keep(candidate);
-                }
+        std::ranges::transform(cones, in_cells.begin(), [&](const SeenCone& cone) -> Point {
+            return (rotated(cone.position - car.position, heading_rad - car.yaw_rad) + expected.position -
+                    raster_from_) /
+                   kCell_m;
+        });
+        const double yaw_rad = car.yaw_rad - heading_rad;
+        for (const Point& moved : moves) {
+            for (const Raster& raster : rasters_) {
+                const double score = nearness(raster, in_cells, moved / kCell_m);
+                if (!best.takes(score)) continue;
+                const Point place = car.position - rotated(expected.position + moved, yaw_rad);
+                best.add({.registration = {{place, yaw_rad}, raster.widening_m}, .score = score});
             }
         }
     }
-    return best;
+    return best.take();
 }
 
 std::vector<RegistrationFit> KnownRegistration::contenders(std::span<const SeenCone> all,
@@ -201,15 +271,6 @@ std::vector<RegistrationFit> KnownRegistration::contenders(std::span<const SeenC
         if (is_new) contenders.push_back(fit);
     }
     return contenders;
-}
-
-std::optional<RegistrationFit> KnownRegistration::search(std::span<const SeenCone> cones,
-                                                         std::span<const SeenView> views, const Pose& car,
-                                                         const Pose& expected, const SearchReach& reach,
-                                                         const Deadline& deadline) const {
-    const std::vector<RegistrationFit> found = contenders(cones, views, car, expected, reach, deadline);
-    if (found.size() != 1) return std::nullopt;
-    return found.front();
 }
 
 Registration KnownRegistration::refine(Registration registration, std::span<const SeenCone> all,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "detectors/planner/known_course.hpp"
-#include "detectors/planner/seen_cones.hpp"
 #include "model/deadline.hpp"
 
 #include <optional>
@@ -9,6 +8,37 @@
 #include <vector>
 
 namespace conelane {
+
+/// A cone seen in one or more frames.
+struct SeenCone {
+    Point position{0.0, 0.0};              ///< mean, map frame
+    ConeColor color = ConeColor::unknown;  ///< the last known color seen
+    int sightings = 0;
+    double last_s = 0.0;  ///< time of the last frame with it
+};
+
+/// The region that a frame looked at, estimated from its cones.
+struct SeenView {
+    Pose pose;
+    double range_m = 0.0;      ///< distance of the farthest cone
+    double bearing_rad = 0.0;  ///< bearing of the cone farthest from the heading
+
+    /// Whether a cone at this place would certainly be in view.
+    [[nodiscard]] bool covers(const Point& place) const;
+};
+
+/// The view of a frame.
+[[nodiscard]] SeenView view_of(const Frame& frame);
+
+/// Cones of the last frames, identified by their places: ids may change.
+class SeenCones {
+  public:
+    void observe(const Frame& frame);
+    [[nodiscard]] std::span<const SeenCone> cones() const { return cones_; }
+
+  private:
+    std::vector<SeenCone> cones_;
+};
 
 /// Pose of a known course in the map, and its width.
 struct Registration {
@@ -60,12 +90,6 @@ class KnownRegistration {
                                                           const Pose& expected, const SearchReach& reach = {},
                                                           const Deadline& deadline = Deadline()) const;
 
-    /// The registration of the list, if it has exactly one.
-    [[nodiscard]] std::optional<RegistrationFit> search(std::span<const SeenCone> cones,
-                                                        std::span<const SeenView> views, const Pose& car,
-                                                        const Pose& expected, const SearchReach& reach = {},
-                                                        const Deadline& deadline = Deadline()) const;
-
     /// Moves a registration onto the cones near the car, by at most about a meter. Directions that the cones
     /// do not determine are kept; `stiffness` is the weight of the old registration.
     [[nodiscard]] Registration refine(Registration registration, std::span<const SeenCone> cones,
@@ -82,6 +106,9 @@ class KnownRegistration {
         std::vector<float> nearness;
     };
     [[nodiscard]] Raster raster(double widening_m) const;
+    /// Sum over cones, whose places are in cells of the raster, moved by as many cells.
+    [[nodiscard]] float nearness(const Raster& raster, std::span<const Point> in_cells,
+                                 const Point& moved_cells) const;
     [[nodiscard]] std::vector<RegistrationFit> candidates(std::span<const SeenCone> cones, const Pose& car,
                                                           const Pose& expected, const SearchReach& reach,
                                                           const Deadline& deadline) const;

@@ -40,10 +40,6 @@ Point direction(double heading_rad) {
     return {std::cos(heading_rad), std::sin(heading_rad)};
 }
 
-double turn_rad(double from_rad, double to_rad) {
-    return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
-}
-
 DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share) {
     DrivablePoint point;
     point.s_m = std::lerp(a.s_m, b.s_m, share);
@@ -56,18 +52,32 @@ DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double sha
     return point;
 }
 
-/// Points of any spacing as a lane: arc lengths from chords, then equal steps.
-DrivableLane measured(std::vector<DrivablePoint> points, double step_m) {
-    DrivableLane lane;
-    double s_m = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (i > 0) s_m += (points[i].position - points[i - 1].position).norm();
-        points[i].s_m = s_m;
+/// What a lane knows of its boundaries, for a part of it whose arc lengths are larger by `by_m`.
+void keep_knowledge(const DrivableLane& lane, double by_m, DrivableLane& part) {
+    part.left_inferred = lane.left_inferred;
+    part.right_inferred = lane.right_inferred;
+    if (lane.trusted_m) part.trusted_m = std::clamp(*lane.trusted_m + by_m, 0.0, part.length_m);
+    for (BridgedGap gap : lane.bridged) {
+        gap.from_s_m = std::max(0.0, gap.from_s_m + by_m);
+        gap.to_s_m = std::min(part.length_m, gap.to_s_m + by_m);
+        if (gap.to_s_m > gap.from_s_m) part.bridged.push_back(gap);
     }
-    if (!(s_m > 0.0)) return lane;
-    lane.points = std::move(points);
-    lane.length_m = s_m;
-    return stretch(lane, 0.0, s_m, step_m);
+}
+
+/// Points of any spacing as a lane, by arc lengths from chords, at equal steps. They begin `by_m` before
+/// those of `lane`, whose knowledge the new lane keeps.
+DrivableLane measured(std::vector<DrivablePoint> points, double step_m, const DrivableLane& lane,
+                      double by_m = 0.0) {
+    DrivableLane whole;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i > 0) whole.length_m += (points[i].position - points[i - 1].position).norm();
+        points[i].s_m = whole.length_m;
+    }
+    if (!(whole.length_m > 0.0)) return {};
+    whole.points = std::move(points);
+    DrivableLane result = stretch(whole, 0.0, whole.length_m, step_m);
+    keep_knowledge(lane, by_m, result);
+    return result;
 }
 
 /// Headings and curvatures of a line whose positions alone are known.
@@ -136,7 +146,27 @@ bool lies_behind_bend(const Pose& pose, const DrivablePoint& first) {
            std::min(behind_m, before_m) >= kMinBend_m * std::tan(std::abs(bend_rad) / 2.0);
 }
 
+/// The points of a lane up to a little before the beginning of another one; none if it does not lead there.
+std::vector<DrivablePoint> leading_to(const DrivablePoint& beginning, const DrivableLane& lane) {
+    std::vector<DrivablePoint> points;
+    if (lane.points.size() < 2) return points;
+    const auto foot = foot_on(lane, pose_of(beginning), 0.0, kMaxJoin_m + kBesideCar_m);
+    if (!foot || foot->offset_m > kJoinOffset_m || foot->s_m >= lane.points.back().s_m + kAtCar_m) return {};
+    const double turned_rad = turn_rad(point_at(lane, foot->s_m).heading_rad, beginning.heading_rad);
+    if (std::abs(turned_rad) > kJoinTurn_rad) return {};
+    for (const DrivablePoint& point : lane.points) {
+        if (point.s_m > foot->s_m - kJoinBend_m) break;
+        points.push_back(point);
+    }
+    if (points.empty()) points.push_back(lane.points.front());
+    return points;
+}
+
 }  // namespace
+
+double turn_rad(double from_rad, double to_rad) {
+    return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+}
 
 std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m, double to_s_m) {
     std::optional<LaneFoot> best;
@@ -181,14 +211,7 @@ DrivableLane stretch(const DrivableLane& lane, double from_s_m, double to_s_m, d
         part.points.back().s_m = s_m;
     }
     part.length_m = std::max(length_m, part.points.back().s_m);
-    part.left_inferred = lane.left_inferred;
-    part.right_inferred = lane.right_inferred;
-    if (lane.trusted_m) part.trusted_m = std::clamp(*lane.trusted_m - from_s_m, 0.0, part.length_m);
-    for (BridgedGap gap : lane.bridged) {
-        gap.from_s_m = std::max(0.0, gap.from_s_m - from_s_m);
-        gap.to_s_m = std::min(part.length_m, gap.to_s_m - from_s_m);
-        if (gap.to_s_m > gap.from_s_m) part.bridged.push_back(gap);
-    }
+    keep_knowledge(lane, -from_s_m, part);
     return part;
 }
 
@@ -220,19 +243,7 @@ std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& p
     if (ahead_m <= kAtCar_m && offset.norm() <= kBesideCar_m) return lane;
     if (offset.norm() > kMaxJoin_m || pose.ahead_m(first.position) < -kBesideCar_m) return std::nullopt;
     std::vector<DrivablePoint> points;
-    if (before != nullptr && before->points.size() > 1) {
-        const Pose beginning{first.position, first.heading_rad};
-        const auto foot = foot_on(*before, beginning, 0.0, kMaxJoin_m + kBesideCar_m);
-        if (foot && foot->offset_m <= kJoinOffset_m && foot->s_m < before->points.back().s_m + kAtCar_m &&
-            std::abs(turn_rad(point_at(*before, foot->s_m).heading_rad, first.heading_rad)) <=
-                kJoinTurn_rad) {
-            for (const DrivablePoint& point : before->points) {
-                if (point.s_m > foot->s_m - kJoinBend_m) break;
-                points.push_back(point);
-            }
-            if (points.empty()) points.push_back(before->points.front());
-        }
-    }
+    if (before != nullptr) points = leading_to(first, *before);
     if (points.empty()) {
         const double to_it_m = std::max(0.0, pose.ahead_m(first.position));
         const bool is_aside = std::abs(pose.left_m(first.position)) > kBesideCar_m + kAsideShare * to_it_m;
@@ -251,23 +262,15 @@ std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& p
     joined_m += (first.position - points.back().position).norm();
     points.insert(points.end(), lane.points.begin(), lane.points.end());
     derive(points, joined, until);
-    DrivableLane result = measured(std::move(points), step_m);
+    DrivableLane result = measured(std::move(points), step_m, lane, joined_m);
     if (result.points.size() < 2) return std::nullopt;
-    result.left_inferred = lane.left_inferred;
-    result.right_inferred = lane.right_inferred;
-    if (lane.trusted_m) result.trusted_m = std::min(result.length_m, *lane.trusted_m + joined_m);
-    for (BridgedGap gap : lane.bridged) {
-        gap.from_s_m += joined_m;
-        gap.to_s_m = std::min(result.length_m, gap.to_s_m + joined_m);
-        if (gap.to_s_m > gap.from_s_m) result.bridged.push_back(gap);
-    }
     return result;
 }
 
 DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, double step_m) {
     if (lane.points.size() < 2 || before.points.size() < 2) return lane;
     const DrivablePoint& last = lane.points.back();
-    const auto foot = foot_on(before, {last.position, last.heading_rad}, 0.0, before.points.back().s_m);
+    const auto foot = foot_on(before, pose_of(last), 0.0, before.points.back().s_m);
     if (!foot || foot->offset_m > kExtendOffset_m) return lane;
     if (std::abs(turn_rad(point_at(before, foot->s_m).heading_rad, last.heading_rad)) > kExtendTurn_rad)
         return lane;
@@ -282,12 +285,7 @@ DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, doub
         points.back().position += std::max(0.0, 1.0 - past_m / kFade_m) * offset;
     }
     if (points.size() == lane.points.size()) return lane;
-    DrivableLane result = measured(std::move(points), step_m);
-    result.left_inferred = lane.left_inferred;
-    result.right_inferred = lane.right_inferred;
-    if (lane.trusted_m) result.trusted_m = std::min(*lane.trusted_m, result.length_m);
-    result.bridged = lane.bridged;
-    return result;
+    return measured(std::move(points), step_m, lane);
 }
 
 DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, double step_m) {
@@ -297,7 +295,7 @@ DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, doub
     std::size_t until = 0;
     for (std::size_t i = 0; i < points.size() && points[i].s_m < kSteadyLength_m; ++i) {
         DrivablePoint& point = points[i];
-        const Pose pose{point.position, point.heading_rad};
+        const Pose pose = pose_of(point);
         const auto foot = foot_on(before, pose, point.s_m - kSteadyFade_m, point.s_m + kSteadyFade_m);
         if (!foot || foot->s_m <= 0.0) continue;
         const double to_left_m = pose.left_m(point_at(before, foot->s_m).position);
@@ -313,15 +311,7 @@ DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, doub
     }
     if (until == 0) return lane;
     derive(points, 0, std::min(points.size(), until + 1));
-    DrivableLane result = measured(std::move(points), step_m);
-    result.left_inferred = lane.left_inferred;
-    result.right_inferred = lane.right_inferred;
-    if (lane.trusted_m) result.trusted_m = std::min(*lane.trusted_m, result.length_m);
-    for (BridgedGap gap : lane.bridged) {
-        gap.to_s_m = std::min(gap.to_s_m, result.length_m);
-        if (gap.to_s_m > gap.from_s_m) result.bridged.push_back(gap);
-    }
-    return result;
+    return measured(std::move(points), step_m, lane);
 }
 
 }  // namespace conelane

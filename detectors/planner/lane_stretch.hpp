@@ -7,6 +7,13 @@
 
 namespace conelane {
 
+/// The turn from one heading to another, in [-pi, pi].
+[[nodiscard]] double turn_rad(double from_rad, double to_rad);
+
+[[nodiscard]] inline Pose pose_of(const DrivablePoint& point) {
+    return {point.position, point.heading_rad};
+}
+
 /// The place of a car on a lane: the nearest point whose direction is within 90 degrees of the car's heading.
 struct LaneFoot {
     double s_m = 0.0;

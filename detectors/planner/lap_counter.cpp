@@ -23,10 +23,6 @@ Pose moved(const Pose& pose, const RigidShift& shift) {
 
 }  // namespace
 
-void LapCounter::clear() {
-    *this = LapCounter(settings_, laps_of_run_);
-}
-
 void LapCounter::move_along(const RigidShift& shift) {
     for (std::optional<Pose>* pose : {&first_, &last_, &finish_}) {
         if (*pose) **pose = moved(**pose, shift);
@@ -50,7 +46,7 @@ std::optional<Pose> LapCounter::gate_on(const DrivableLane& lane, const ConeMemo
         std::optional<Post> post;
         double nearest_m = kMaxSide_m;
         for (const DrivablePoint& point : lane.points) {
-            const Pose at{point.position, point.heading_rad};
+            const Pose at = pose_of(point);
             const double offset_m = (cone.position - point.position).norm();
             if (offset_m >= nearest_m || std::abs(at.ahead_m(cone.position)) > 1.0) continue;
             nearest_m = offset_m;
@@ -72,8 +68,7 @@ std::optional<Pose> LapCounter::gate_on(const DrivableLane& lane, const ConeMemo
             ++(post.left ? left : right);
         }
         if (left == 0 || right == 0) continue;
-        const DrivablePoint middle = point_at(lane, sum_m / (left + right));
-        return Pose{middle.position, middle.heading_rad};
+        return pose_of(point_at(lane, sum_m / (left + right)));
     }
     return std::nullopt;
 }
@@ -81,7 +76,7 @@ std::optional<Pose> LapCounter::gate_on(const DrivableLane& lane, const ConeMemo
 bool LapCounter::crosses(const Pose& line, const Pose& pose) const {
     return last_ && line.ahead_m(last_->position) < 0.0 && line.ahead_m(pose.position) >= 0.0 &&
            std::abs(line.left_m(pose.position)) <= settings_.line_half_width_m &&
-           std::abs(std::remainder(pose.yaw_rad - line.yaw_rad, 2.0 * std::numbers::pi)) <= kWith_rad;
+           std::abs(turn_rad(line.yaw_rad, pose.yaw_rad)) <= kWith_rad;
 }
 
 bool LapCounter::nothing_ahead(const Pose& place, const ConeMemory& memory) {

@@ -23,7 +23,6 @@ class LapCounter {
     /// Adds the car's pose. `lane`: the lane ahead; without points it is unknown.
     void observe(const Pose& pose, const DrivableLane& lane, const ConeMemory& memory);
     void move_along(const RigidShift& shift);
-    void clear();
 
     [[nodiscard]] int laps() const { return laps_; }
     /// The gate at which the course ends, if it is known.

@@ -1,13 +1,10 @@
-#include "detectors/planner/lap_planner.hpp"
-
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/cone_memory.hpp"
 #include "detectors/planner/course_memory.hpp"
-#include "detectors/planner/frame.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
 #include "detectors/planner/lap_counter.hpp"
-#include "detectors/planner/path_memory.hpp"
+#include "detectors/planner/planners.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,20 +21,43 @@ void validate(const PlannerOptions& options) {
     validate_shared(options);
 }
 
+constexpr LaneChoiceSettings kChoice;
+constexpr CourseSettings kCourse;
+
+/// All that a run changes.
+struct Run {
+    Run(const PlannerOptions& options, int laps)
+        : path(kChoice, options.drivable.step_m, options.max_age_s),
+          choice(kChoice),
+          counter(kCourse, laps),
+          course(kCourse, options.drivable.step_m) {}
+
+    ConeMemory cones;
+    PathMemory path;
+    LaneChoice choice;
+    LapCounter counter;
+    CourseMemory course;
+    std::optional<double> time_s;
+    Pose pose;  ///< of that time
+    Plan last;
+    bool started = false;     ///< a lane was driven
+    bool off_course = false;  ///< what is seen has outweighed the course of the lap before
+};
+
 class LapPlanner final : public Planner {
   public:
     LapPlanner(const PlannerOptions& options, std::unique_ptr<LaneDetector> detector)
         : options_(options),
           laps_(options.laps.value_or(options.mission == Mission::autocross ? 1 : 10)),
           detector_(std::move(detector)),
-          path_(choice_settings_, options.drivable.step_m, options.max_age_s),
-          choice_(choice_settings_),
-          counter_(course_settings_, laps_),
-          course_(course_settings_, options.drivable.step_m) {}
+          run_(options_, laps_) {}
 
     Plan update(const Frame& frame, const DetectionLimits& limits) override;
-    std::optional<DrivableLane> course() const override { return course_.course(); }
-    void reset() override;
+    std::optional<DrivableLane> course() const override { return run_.course.course(); }
+    void reset() override {
+        detector_->reset();
+        run_ = Run(options_, laps_);
+    }
 
   private:
     /// What a frame says of the path; nothing: no lane.
@@ -46,108 +66,85 @@ class LapPlanner final : public Planner {
         std::optional<DrivableLane> known;  ///< of the lap before, instead of one of this frame
     };
 
-    void move_along(const RigidShift& shift);
     [[nodiscard]] std::optional<DrivableLane> fresh_lane(const LaneAnswer& answer, const Scene& scene,
                                                          const DrivableLane& left) const;
     [[nodiscard]] Choice chosen_lane(const LaneAnswer& answer, const Scene& scene, const DrivableLane& left);
     [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left) const;
     [[nodiscard]] bool is_worse(const DrivableLane& left, const DrivableLane& known) const;
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
+    void choose_path(Choice choice, const DrivableLane& left, Plan& plan);
     void lead_out(Plan& plan) const;
     void finish(Plan& plan) const;
 
     PlannerOptions options_;
-    LaneChoiceSettings choice_settings_;
-    CourseSettings course_settings_;
     int laps_;
     std::unique_ptr<LaneDetector> detector_;
-    ConeMemory cones_;
-    PathMemory path_;
-    LaneChoice choice_;
-    LapCounter counter_;
-    CourseMemory course_;
-    std::optional<double> time_s_;
-    Pose pose_;  ///< of that time
-    Plan last_;
-    bool started_ = false;     ///< a lane was driven
-    bool off_course_ = false;  ///< what is seen has outweighed the course of the lap before
+    Run run_;
 };
-
-void LapPlanner::reset() {
-    detector_->reset();
-    cones_.clear();
-    path_.forget();
-    choice_.clear();
-    counter_.clear();
-    course_.clear();
-    time_s_.reset();
-    last_ = {};
-    started_ = false;
-    off_course_ = false;
-}
-
-void LapPlanner::move_along(const RigidShift& shift) {
-    path_.move_along(shift);
-    choice_.move_along(shift);
-    counter_.move_along(shift);
-    course_.move_along(shift);
-}
 
 Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     static_cast<void>(checked_scene(frame, limits));  // throws if the frame or a limit is invalid
-    if (time_s_ && frame.time_s <= *time_s_) {
+    if (run_.time_s && frame.time_s <= *run_.time_s) {
         // The same frame has the same answer. An older frame, or one of a clock that stands still, cannot be
         // trusted.
-        Plan plan = last_;
-        const bool is_same = frame.time_s == *time_s_ && frame.pose.position == pose_.position &&
-                             frame.pose.yaw_rad == pose_.yaw_rad;
+        Plan plan = run_.last;
+        const bool is_same = frame.time_s == *run_.time_s && frame.pose.position == run_.pose.position &&
+                             frame.pose.yaw_rad == run_.pose.yaw_rad;
         if (!is_same && plan.state == PlanState::following) plan.state = PlanState::bridging;
         return plan;
     }
-    time_s_ = frame.time_s;
-    pose_ = frame.pose;
-    if (const auto shift = cones_.observe(frame)) move_along(*shift);
-    const Scene scene = cones_.scene(frame.pose);
+    run_.time_s = frame.time_s;
+    run_.pose = frame.pose;
+    if (const auto shift = run_.cones.observe(frame)) {
+        run_.path.move_along(*shift);
+        run_.choice.move_along(*shift);
+        run_.counter.move_along(*shift);
+        run_.course.move_along(*shift);
+    }
+    const Scene scene = run_.cones.scene(frame.pose);
     Plan plan;
     DetectionLimits with_candidates = limits;
     with_candidates.keep_candidates = true;
     plan.answer = detector_->detect(scene, with_candidates);
-    const DrivableLane left = path_.left(frame.pose, frame.time_s);
-    auto [fresh, known] = chosen_lane(plan.answer, scene, left);
+    const DrivableLane left = run_.path.left(frame.pose, frame.time_s);
+    choose_path(chosen_lane(plan.answer, scene, left), left, plan);
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
+    run_.course.record(plan.lane);
+    run_.counter.observe(frame.pose, plan.lane, run_.cones);
+    lead_out(plan);
+    plan.lap = std::min(run_.counter.laps(), laps_);
+    if (run_.counter.laps() >= laps_) finish(plan);
+    run_.last = plan;
+    return plan;
+}
+
+/// `left`: the rest of the lane driven so far.
+void LapPlanner::choose_path(Choice choice, const DrivableLane& left, Plan& plan) {
+    auto& [fresh, known] = choice;
     if (fresh) {
-        *fresh = steadied(*fresh, left, options_.drivable.step_m);
+        plan.lane = steadied(*fresh, left, options_.drivable.step_m);
         // An uncertain lane must not make the planner forget what it knew, because the next frame could then
         // lead anywhere.
-        if (fresh->length_m < choice_settings_.short_m) {
-            *fresh = extended(*fresh, left, options_.drivable.step_m);
+        if (plan.lane.length_m < kChoice.short_m) {
+            plan.lane = extended(plan.lane, left, options_.drivable.step_m);
         }
-        path_.remember(*fresh, frame.time_s);
-        plan.lane = std::move(*fresh);
+        run_.path.remember(plan.lane, *run_.time_s);
         plan.state = PlanState::following;
-        plan.safe_m = plan.lane.trusted_m.value_or(0.0);
-        started_ = true;
+        run_.started = true;
     } else if (!left.points.empty()) {
         if (!known) {
-            known = known_lane(frame.pose, left);
+            known = known_lane(run_.pose, left);
             if (known && !is_worse(left, *known)) known.reset();
         }
-        if (known) path_.remember(*known, path_.time_s());
+        if (known) run_.path.remember(*known, run_.path.time_s());
         plan.lane = known ? *known : left;
         plan.state = PlanState::bridging;
-        plan.age_s = frame.time_s - path_.time_s();
-        plan.safe_m = plan.lane.trusted_m.value_or(0.0);
+        plan.age_s = *run_.time_s - run_.path.time_s();
     } else {
-        plan.state = started_ ? PlanState::lost : PlanState::searching;
+        plan.state = run_.started ? PlanState::lost : PlanState::searching;
     }
-    course_.record(plan.lane);
-    counter_.observe(frame.pose, plan.lane, cones_);
-    lead_out(plan);
-    plan.lap = std::min(counter_.laps(), laps_);
-    if (counter_.laps() >= laps_) finish(plan);
-    last_ = plan;
-    return plan;
+    plan.safe_m = plan.lane.trusted_m.value_or(0.0);
 }
 
 std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, const Scene& scene,
@@ -169,16 +166,16 @@ LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene
                                            const DrivableLane& left) {
     std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
     if (!fresh) return {};
-    const DrivableLane course = course_.ahead(scene.pose, choice_settings_.course_ahead_m);
-    if (off_course_ && choice_.agrees(*fresh, course)) off_course_ = false;
-    const bool is_in_later_lap = !off_course_ && !left.points.empty() && !course.points.empty();
-    const DrivableLane& before = is_in_later_lap ? choice_.reference(*fresh, left, course) : left;
+    const DrivableLane course = run_.course.ahead(scene.pose, kChoice.course_ahead_m);
+    if (run_.off_course && run_.choice.agrees(*fresh, course)) run_.off_course = false;
+    const bool is_in_later_lap = !run_.off_course && !left.points.empty() && !course.points.empty();
+    const DrivableLane& before = is_in_later_lap ? run_.choice.reference(*fresh, left, course) : left;
     const bool by_course = &before == &course;
-    const double weight = answer.confidence.value_or(choice_settings_.unsure_weight);
+    const double weight = answer.confidence.value_or(kChoice.unsure_weight);
     std::optional<DrivableLane> kept;
-    double kept_weight = by_course ? choice_settings_.course_weight : 0.0;
-    if (answer.enumeration && !choice_.agrees(*fresh, before)) {
-        double best = choice_settings_.min_kept_weight;
+    double kept_weight = by_course ? kChoice.course_weight : 0.0;
+    if (answer.enumeration && !run_.choice.agrees(*fresh, before)) {
+        double best = kChoice.min_kept_weight;
         for (const LaneCandidate& candidate : answer.enumeration->candidates) {
             const double probability = candidate.confidence.value_or(0.0);
             if (probability < best) continue;
@@ -186,18 +183,18 @@ LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene
             other.status = LaneStatus::found;
             other.lane = candidate.lane;
             std::optional<DrivableLane> lane = fresh_lane(other, scene, left);
-            if (!lane || !choice_.agrees(*lane, before)) continue;
+            if (!lane || !run_.choice.agrees(*lane, before)) continue;
             // Detectors say how far their answer is trusted. Of a candidate, what it shares with the trusted
             // rest of the lane driven so far is trusted.
-            const double shared_m = common_m(*lane, left, choice_settings_.jump_m, choice_settings_.near_m);
+            const double shared_m = common_m(*lane, left, kChoice.jump_m, kChoice.near_m);
             lane->trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
             kept = std::move(lane);
             best = probability;
         }
         if (kept) kept_weight += best;
     }
-    const bool agrees = choice_.agrees(*fresh, before);
-    if (!choice_.take(*fresh, before, weight, kept_weight)) {
+    const bool agrees = run_.choice.agrees(*fresh, before);
+    if (!run_.choice.take(*fresh, before, weight, kept_weight)) {
         // A candidate that agrees with the course near the car may leave it farther on, or end.
         if (by_course && kept) {
             if (std::optional<DrivableLane> known = known_lane(scene.pose, left))
@@ -205,17 +202,17 @@ LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene
         }
         return {std::move(kept), {}};
     }
-    if (by_course && !agrees) off_course_ = true;
+    if (by_course && !agrees) run_.off_course = true;
     return {std::move(fresh), {}};
 }
 
 /// In later laps: the course of the lap before, up to `course_ahead_m`, if the car is on it and nothing has
 /// outweighed it. It has been driven, whereas the far end of a lane is from frames that saw it from afar.
 std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const DrivableLane& left) const {
-    if (off_course_) return std::nullopt;
-    DrivableLane course = course_.ahead(pose, choice_settings_.course_ahead_m);
-    if (!choice_.is_on(course, left)) return std::nullopt;
-    const double shared_m = common_m(course, left, choice_settings_.jump_m, choice_settings_.near_m);
+    if (run_.off_course) return std::nullopt;
+    DrivableLane course = run_.course.ahead(pose, kChoice.course_ahead_m);
+    if (!run_.choice.is_on(course, left)) return std::nullopt;
+    const double shared_m = common_m(course, left, kChoice.jump_m, kChoice.near_m);
     course.trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
     return course;
 }
@@ -223,24 +220,24 @@ std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const Driva
 /// Whether the rest of the lane driven so far is worse than the course of the lap before. It is newer, so it
 /// is kept while it is long enough and runs in the lane of the lap before.
 bool LapPlanner::is_worse(const DrivableLane& left, const DrivableLane& known) const {
-    return left.length_m < choice_settings_.short_m ||
-           jump_m(left, known, choice_settings_.near_m) > options_.drivable.default_width_m / 2.0;
+    return left.length_m < kChoice.short_m ||
+           jump_m(left, known, kChoice.near_m) > options_.drivable.default_width_m / 2.0;
 }
 
 LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {
     const auto rename = [&](Lane& lane) {
         for (std::vector<ConeId>* side : {&lane.left, &lane.right}) {
-            for (ConeId& id : *side) id = cones_.given_id(id);
+            for (ConeId& id : *side) id = run_.cones.given_id(id);
         }
     };
     rename(answer.lane);
-    if (answer.uncut) rename(answer.uncut->lane);
+    if (answer.solved) rename(answer.solved->lane);
     if (answer.enumeration) {
         for (LaneCandidate& candidate : answer.enumeration->candidates) rename(candidate.lane);
     }
     for (MergedCone& merged : answer.merged) {
-        merged.cone = cones_.given_id(merged.cone);
-        merged.into = cones_.given_id(merged.into);
+        merged.cone = run_.cones.given_id(merged.cone);
+        merged.into = run_.cones.given_id(merged.into);
     }
     return answer;
 }
@@ -248,18 +245,21 @@ LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {
 /// The way behind a finish where the course ends: straight on, so that the car can cross it and come to rest.
 void LapPlanner::lead_out(Plan& plan) const {
     constexpr double kAtGate_m = 3.0;
-    const std::optional<Pose> gate = counter_.end();
+    const std::optional<Pose> gate = run_.counter.end();
     if (!gate) return;
-    const double to_gate_m = -gate->ahead_m(pose_.position);
+    const double to_gate_m = -gate->ahead_m(run_.pose.position);
     const bool is_known = !plan.lane.points.empty();
     if (is_known ? std::abs(plan.lane.length_m - to_gate_m) > kAtGate_m : to_gate_m > kAtGate_m) return;
     const double from_m = is_known ? -kAtGate_m : -to_gate_m;
     const double step_m = options_.drivable.step_m;
     const double half_m = options_.drivable.default_width_m / 2.0;
     DrivableLane exit;
-    for (double s_m = 0.0; from_m + s_m <= course_settings_.stop_m; s_m += step_m) {
-        exit.points.push_back(
-            {s_m, gate->position + (from_m + s_m) * gate->heading(), gate->yaw_rad, 0.0, half_m, half_m});
+    for (double s_m = 0.0; from_m + s_m <= kCourse.stop_m; s_m += step_m) {
+        exit.points.push_back({.s_m = s_m,
+                               .position = gate->position + (from_m + s_m) * gate->heading(),
+                               .heading_rad = gate->yaw_rad,
+                               .width_left_m = half_m,
+                               .width_right_m = half_m});
         exit.length_m = s_m;
     }
     if (exit.points.size() < 2) return;
@@ -269,13 +269,13 @@ void LapPlanner::lead_out(Plan& plan) const {
     plan.safe_m = plan.lane.trusted_m.value_or(0.0);
     if (is_known) return;
     plan.state = PlanState::bridging;
-    plan.age_s = *time_s_ - path_.time_s();
+    plan.age_s = *run_.time_s - run_.path.time_s();
 }
 
 void LapPlanner::finish(Plan& plan) const {
     plan.state = PlanState::finished;
     plan.stop = true;
-    const double left_m = course_settings_.stop_m - counter_.since_line_m();
+    const double left_m = kCourse.stop_m - run_.counter.since_line_m();
     plan.lane = stretch(plan.lane, 0.0, left_m, options_.drivable.step_m);
     plan.safe_m = std::min(plan.safe_m, plan.lane.length_m);
 }

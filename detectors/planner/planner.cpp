@@ -1,51 +1,44 @@
 #include "conelane/planner.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "detectors/planner/known_course_planner.hpp"
-#include "detectors/planner/lap_planner.hpp"
+#include "detectors/planner/planners.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
 #include <string>
 
 namespace conelane {
+namespace {
+
+constexpr std::array<std::string_view, 4> kMissions{"trackdrive", "autocross", "acceleration", "skidpad"};
+constexpr std::array<std::string_view, 5> kStates{"searching", "following", "bridging", "lost", "finished"};
+
+/// Empty for a value that the enumeration does not have.
+template <typename Value>
+std::string_view name_of(Value value, std::span<const std::string_view> names) {
+    const auto place = static_cast<std::size_t>(value);
+    return place < names.size() ? names[place] : "";
+}
+
+}  // namespace
 
 std::string_view to_string(Mission mission) {
-    switch (mission) {
-        case Mission::trackdrive:
-            return "trackdrive";
-        case Mission::autocross:
-            return "autocross";
-        case Mission::acceleration:
-            return "acceleration";
-        case Mission::skidpad:
-            return "skidpad";
-    }
-    return "";
+    return name_of(mission, kMissions);
 }
 
 Mission mission_named(std::string_view name) {
     std::string all;
-    for (const Mission mission :
-         {Mission::trackdrive, Mission::autocross, Mission::acceleration, Mission::skidpad}) {
-        if (to_string(mission) == name) return mission;
-        all += (all.empty() ? "" : ", ") + std::string(to_string(mission));
+    for (std::size_t i = 0; i < kMissions.size(); ++i) {
+        if (kMissions[i] == name) return static_cast<Mission>(i);
+        all += (all.empty() ? "" : ", ") + std::string(kMissions[i]);
     }
     throw InvalidInput("mission", "there is no '" + std::string(name) + "', only " + all);
 }
 
 std::string_view to_string(PlanState state) {
-    switch (state) {
-        case PlanState::searching:
-            return "searching";
-        case PlanState::following:
-            return "following";
-        case PlanState::bridging:
-            return "bridging";
-        case PlanState::lost:
-            return "lost";
-        case PlanState::finished:
-            return "finished";
-    }
-    return "";
+    return name_of(state, kStates);
 }
 
 Planner::~Planner() = default;
@@ -60,6 +53,30 @@ std::unique_ptr<Planner> make_planner(const PlannerOptions& options) {
             return make_known_course_planner(options);
     }
     throw InvalidInput("mission", "is not a mission");
+}
+
+Scene checked_scene(const Frame& frame, const DetectionLimits& limits) {
+    if (!std::isfinite(frame.time_s)) throw InvalidInput("time_s", "is not finite");
+    if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
+    Scene scene{"frame", frame.pose, frame.cones};
+    std::vector<ConeId> used;
+    for (const Cone& cone : frame.cones) {
+        if (cone.id != kNoId) used.push_back(cone.id);
+    }
+    std::ranges::sort(used);
+    ConeId next = 0;
+    for (Cone& cone : scene.cones) {
+        if (cone.id != kNoId) continue;
+        while (std::ranges::binary_search(used, next)) ++next;
+        cone.id = next++;
+    }
+    validate(scene);
+    return scene;
+}
+
+void validate_shared(const PlannerOptions& options) {
+    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "must be at least 0");
+    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // throws if an option is out of range
 }
 
 }  // namespace conelane

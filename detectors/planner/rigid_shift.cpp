@@ -55,8 +55,8 @@ Point RigidShift::operator()(const Point& point) const {
     return about + by + Point(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y());
 }
 
-void move(DrivableLane& lane, const RigidShift& shift) {
-    for (DrivablePoint& point : lane.points) {
+void move(std::span<DrivablePoint> points, const RigidShift& shift) {
+    for (DrivablePoint& point : points) {
         point.position = shift(point.position);
         point.heading_rad = std::remainder(point.heading_rad + shift.turn_rad, 2.0 * std::numbers::pi);
     }

@@ -19,8 +19,8 @@ struct RigidShift {
     [[nodiscard]] Point operator()(const Point& point) const;
 };
 
-/// The same lane in the moved map.
-void move(DrivableLane& lane, const RigidShift& shift);
+/// The same points in the moved map.
+void move(std::span<DrivablePoint> points, const RigidShift& shift);
 
 /// The place of a cone as remembered and as seen now.
 struct PlacePair {

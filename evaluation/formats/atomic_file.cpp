@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace conelane {
@@ -179,6 +180,71 @@ void require_writable(const fs::path& target) {
     const fs::file_status status = fs::status(target, ignored);
     if (fs::is_other(status)) return;
     const AtomicFile probe(target);
+}
+
+template <typename Write, typename Succeeded>
+auto OutputStream::Buffer::watched(const Write& write, const Succeeded& succeeded) {
+    errno = 0;
+    const auto result = write();
+    if (!succeeded(result) && reason_ == 0) reason_ = errno;
+    return result;
+}
+
+std::filebuf::int_type OutputStream::Buffer::overflow(int_type character) {
+    return watched([&] { return std::filebuf::overflow(character); },
+                   [](int_type written) { return written != traits_type::eof(); });
+}
+
+std::streamsize OutputStream::Buffer::xsputn(const char* text, std::streamsize count) {
+    return watched([&] { return std::filebuf::xsputn(text, count); },
+                   [&](std::streamsize written) { return written == count; });
+}
+
+int OutputStream::Buffer::sync() {
+    return watched([&] { return std::filebuf::sync(); }, [](int result) { return result == 0; });
+}
+
+void OutputStream::open(const std::filesystem::path& file, std::ios::openmode mode) {
+    errno = 0;
+    if (buffer_.open(file, mode | std::ios::out) == nullptr) {
+        setstate(std::ios::failbit);
+    } else {
+        clear();
+    }
+}
+
+void OutputStream::close() {
+    const bool is_closed =
+        buffer_.watched([&] { return buffer_.close() != nullptr; }, [](bool closed) { return closed; });
+    if (!is_closed) setstate(std::ios::failbit);
+}
+
+void OutputStream::require_written(const std::filesystem::path& file) const {
+    // `stream << other.rdbuf()` does not report a failed write of its target.
+    if (good() && buffer_.reason() == 0) return;
+    std::string message = "cannot be written to its end";
+    if (buffer_.reason() != 0) message += ": " + std::generic_category().message(buffer_.reason());
+    throw InputError(file, 0, "", message);
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : descriptor_(::open((folder / ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) {
+        throw InputError(folder, 0, "", "cannot be written: " + std::generic_category().message(errno));
+    }
+    while (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+        if (errno == EINTR) continue;
+        const int reason = errno;
+        ::close(descriptor_);
+        throw InputError(folder, 0, "",
+                         reason == EWOULDBLOCK
+                             ? "another conelane is writing there"
+                             : "cannot be locked: " + std::generic_category().message(reason));
+    }
+}
+
+FolderLock::~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace conelane

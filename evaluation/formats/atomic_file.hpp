@@ -1,14 +1,46 @@
 #pragma once
 
 #include "evaluation/formats/interruption.hpp"
-#include "evaluation/formats/output_stream.hpp"
 
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <ostream>
 #include <span>
+#include <utility>
 
 namespace conelane {
+
+/// Like std::ofstream, but keeps the reason of a failed write.
+class OutputStream : public std::ostream {
+  public:
+    OutputStream() : std::ostream(nullptr) { rdbuf(&buffer_); }
+
+    /// Fails like std::ofstream::open, with errno set.
+    void open(const std::filesystem::path& file, std::ios::openmode mode);
+    [[nodiscard]] bool is_open() const { return buffer_.is_open(); }
+    void close();
+    /// Throws InputError naming `file` if a write, a flush or the closing failed, with the system's reason.
+    void require_written(const std::filesystem::path& file) const;
+
+  private:
+    class Buffer : public std::filebuf {
+      public:
+        [[nodiscard]] int reason() const { return reason_; }
+        /// Runs a write, and keeps errno if it is the first failure.
+        template <typename Write, typename Succeeded>
+        auto watched(const Write& write, const Succeeded& succeeded);
+
+      protected:
+        int_type overflow(int_type character) override;
+        std::streamsize xsputn(const char* text, std::streamsize count) override;
+        int sync() override;
+
+      private:
+        int reason_ = 0;  ///< errno of the first failure; 0 without a failure
+    };
+    Buffer buffer_;
+};
 
 /// A file that appears under its name complete or not at all: it is written under a temporary name in the
 /// same folder and renamed by `commit`. If it is destroyed without `commit`, or a signal ends the program,
@@ -51,5 +83,22 @@ void remove_abandoned_files(const std::filesystem::path& folder);
 /// Throws InputError as writing the target would, without changing it. Pipes and devices are not opened:
 /// opening one may end its reader.
 void require_writable(const std::filesystem::path& target);
+
+/// Exclusive right to write into a folder, until destroyed or until the process ends in any way. The empty
+/// file `.lock` carries the lock and stays there: removing it would let two processes hold a lock of that
+/// name.
+class FolderLock {
+  public:
+    /// Throws InputError naming the folder if another process, or another lock of this process, has it.
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+    FolderLock& operator=(FolderLock&&) = delete;
+
+  private:
+    int descriptor_;
+};
 
 }  // namespace conelane

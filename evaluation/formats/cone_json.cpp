@@ -14,7 +14,7 @@ constexpr std::size_t kClasses = 5;
 
 }  // namespace
 
-void read_color(const JsonNode& json, Cone& cone) {
+void ConeColors::read(const JsonNode& json, Cone& cone) {
     if (const auto list = json.find("color_probabilities")) {
         if (list->array_size() != kClasses)
             list->fail("must hold 5 numbers: unknown, blue, yellow, orange, big orange");
@@ -32,9 +32,8 @@ void read_color(const JsonNode& json, Cone& cone) {
     if (const auto color = json.find("color")) cone.color = color->one_of(kColors);
 }
 
-nlohmann::ordered_json color_probabilities_json(const ColorProbabilities& probabilities) {
-    return {probabilities.unknown, probabilities.blue, probabilities.yellow, probabilities.orange,
-            probabilities.big_orange};
+void ConeColors::put(nlohmann::ordered_json& json, const Cone& cone, const std::string& /*place*/) {
+    json["color"] = to_string(cone.color);
 }
 
 std::optional<PositionCovariance> covariance_of(const std::array<double, 4>& matrix) {
@@ -45,7 +44,7 @@ std::optional<PositionCovariance> covariance_of(const std::array<double, 4>& mat
     return PositionCovariance{xx, 0.5 * xy + 0.5 * yx, yy};
 }
 
-void read_covariance(const JsonNode& json, Cone& cone) {
+void ConeUncertainty::read(const JsonNode& json, Cone& cone) {
     const auto rows = json.find("position_covariance");
     if (!rows) return;
     constexpr std::size_t kSize = 2;
@@ -61,10 +60,14 @@ void read_covariance(const JsonNode& json, Cone& cone) {
     if (!cone.position_covariance->is_valid()) rows->fail("must be positive semidefinite");
 }
 
-nlohmann::ordered_json covariance_json(const PositionCovariance& covariance) {
+void ConeUncertainty::put(nlohmann::ordered_json& json, const Cone& cone, const std::string& /*place*/) {
     using nlohmann::ordered_json;
-    return ordered_json::array({ordered_json::array({covariance.xx_m2, covariance.xy_m2}),
-                                ordered_json::array({covariance.xy_m2, covariance.yy_m2})});
+    if (const auto& of = cone.color_probabilities)
+        json["color_probabilities"] = {of->unknown, of->blue, of->yellow, of->orange, of->big_orange};
+    if (const auto& of = cone.position_covariance) {
+        json["position_covariance"] = ordered_json::array(
+            {ordered_json::array({of->xx_m2, of->xy_m2}), ordered_json::array({of->xy_m2, of->yy_m2})});
+    }
 }
 
 }  // namespace conelane

@@ -21,31 +21,10 @@ namespace {
 enum Column : std::size_t { tag, x, y, direction };
 constexpr std::array<const char*, 4> kColumns{"tag", "x", "y", "direction"};
 
-/// Names of columns in headers, their letters only; the first one of a column counts.
-constexpr std::pair<std::string_view, Column> kColumnNames[] = {{"tag", tag},
-                                                                {"color", tag},
-                                                                {"colour", tag},
-                                                                {"conetype", tag},
-                                                                {"conecolor", tag},
-                                                                {"conecolour", tag},
-                                                                {"type", tag},
-                                                                {"class", tag},
-                                                                {"label", tag},
-                                                                {"side", tag},
-                                                                {"x", x},
-                                                                {"xm", x},
-                                                                {"posx", x},
-                                                                {"xpos", x},
-                                                                {"positionx", x},
-                                                                {"y", y},
-                                                                {"ym", y},
-                                                                {"posy", y},
-                                                                {"ypos", y},
-                                                                {"positiony", y},
-                                                                {"direction", direction},
-                                                                {"yaw", direction},
-                                                                {"yawrad", direction},
-                                                                {"heading", direction}};
+/// Names of each column in headers, their letters only; the first one counts.
+constexpr std::array<std::string_view, kColumns.size()> kColumnNames{
+    "tag color colour conetype conecolor conecolour type class label side", "x xm posx xpos positionx",
+    "y ym posy ypos positiony", "direction yaw yawrad heading"};
 
 constexpr std::pair<std::string_view, ConeColor> kColorNames[] = {
     {"blue", ConeColor::blue},     {"b", ConeColor::blue},   {"left", ConeColor::blue},
@@ -107,10 +86,11 @@ Layout named_columns(std::string_view header, char separator) {
     Layout layout{separator};
     std::vector<std::string> names;
     for (const std::string_view field : fields_of(header, separator)) names.push_back(letters_of(field));
-    for (const auto& [name, column] : kColumnNames) {
-        const auto found = std::ranges::find(names, name);
-        if (found != names.end() && !layout.places[column]) {
-            layout.places[column] = static_cast<std::size_t>(found - names.begin());
+    for (std::size_t column = 0; column < kColumns.size(); ++column) {
+        std::istringstream known{std::string(kColumnNames[column])};
+        for (std::string name; !layout.places[column] && known >> name;) {
+            const auto found = std::ranges::find(names, name);
+            if (found != names.end()) layout.places[column] = static_cast<std::size_t>(found - names.begin());
         }
     }
     return layout;

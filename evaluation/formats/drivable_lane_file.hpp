@@ -2,7 +2,9 @@
 
 #include "conelane/drivable_lane.hpp"
 #include "conelane/lane_detector.hpp"
+#include "conelane/planner.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -29,5 +31,11 @@ void write_tum_csv(const std::filesystem::path& file, const DrivableLane& lane);
 /// CSV of the M x 4 array that ft-fsd-path-planning returns: a comment `# s_m,x_m,y_m,curvature_1pm`, then
 /// one point a line.
 void write_ft_fsd_csv(const std::filesystem::path& file, const DrivableLane& lane);
+
+/// A plan as a line of JSON, without newline: `frame` is its line number in the input.
+[[nodiscard]] std::string plan_line(std::size_t frame, double time_s, const Plan& plan);
+
+/// The line for a frame that was refused.
+[[nodiscard]] std::string refused_frame_line(std::size_t frame, const std::string& message);
 
 }  // namespace conelane

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 namespace conelane {
@@ -32,5 +33,12 @@ auto parsed_file(const std::filesystem::path& file, const Parse& parse) {
         throw InputError(file, 0, "", error.what());
     }
 }
+
+/// FNV-1a of a file's bytes, 16 hexadecimal digits; empty if it cannot be read.
+[[nodiscard]] std::string file_hash(const std::filesystem::path& file);
+
+/// The text as a gzip file, without a name or a time: the same text gives the same bytes with one version of
+/// zlib.
+[[nodiscard]] std::string gzipped(std::string_view text);
 
 }  // namespace conelane

@@ -2,36 +2,21 @@
 
 #include "evaluation/formats/cone_json.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/run_log.hpp"
-#include "evaluation/input_error.hpp"
-
-#include <string_view>
-#include <utility>
 
 namespace conelane {
 namespace {
 
-Cone read_cone(const JsonNode& json) {
-    Cone cone;
-    cone.id = kNoId;
-    if (const auto id = json.find("id")) cone.id = id->integer();
-    cone.position = {json.member("x").number(), json.member("y").number()};
-    read_color(json, cone);
-    read_covariance(json, cone);
-    if (const auto confidence = json.find("confidence")) cone.confidence = confidence->number();
-    return cone;
-}
+constexpr std::tuple kConeOfFrame =
+    std::tuple_cat(std::tuple{Field{"id", &Cone::id, Absent::when_read}}, kSeenCone);
 
 Frame read_own_frame(const JsonNode& json) {
     Frame frame;
-    const JsonNode pose = json.member("pose");
-    frame.pose.position = {pose.member("x").number(), pose.member("y").number()};
-    frame.pose.yaw_rad = pose.member("yaw").number();
+    read_value(json.member("pose"), frame.pose);
     const JsonNode cones = json.member("cones");
-    const std::size_t size = cones.array_size();
-    frame.cones.reserve(size);
-    for (std::size_t i = 0; i < size; ++i) frame.cones.push_back(read_cone(cones.element(i)));
+    frame.cones.resize(cones.array_size(), Cone{.id = kNoId});
+    for (std::size_t i = 0; i < frame.cones.size(); ++i)
+        read_fields(cones.element(i), frame.cones[i], kConeOfFrame);
     return frame;
 }
 
@@ -91,18 +76,8 @@ std::vector<FrameLine> read_frames(const std::filesystem::path& file, double int
 void for_each_frame_line(std::istream& stream, double interval_s,
                          const std::function<void(const FrameLine&)>& use) {
     FrameReader reader(interval_s);
-    std::size_t number = 0;
-    for (std::string text; std::getline(stream, text);) {
-        ++number;
-        if (is_blank(text)) continue;
-        FrameLine line{number, {}, false, {}};
-        try {
-            with_json_line(text, "", number, [&](const JsonNode& json) { line = reader.read(json, number); });
-        } catch (const InputError& error) {
-            line.fault = error.what();
-        }
-        use(line);
-    }
+    const auto read = [&](const JsonNode& json, FrameLine& line) { line = reader.read(json, json.line()); };
+    for_each_stream_line<FrameLine>(stream, read, use);
 }
 
 }  // namespace conelane

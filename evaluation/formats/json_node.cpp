@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <set>
+#include <numeric>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -22,8 +22,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Builds the value of a text. If an object has a key twice, nlohmann's own parser silently keeps the last
-/// value; here, reading ends at the second one.
+/// Builds the value of a text, and finds its first error. If an object has a key twice, nlohmann's own parser
+/// silently keeps the last value; here, reading ends at the second one.
 class ValueBuilder : public nlohmann::json_sax<json> {
   public:
     bool null() override { return put(nullptr); }
@@ -36,134 +36,15 @@ class ValueBuilder : public nlohmann::json_sax<json> {
     bool start_object(std::size_t /*size*/) override { return open(json::object()); }
     bool key(string_t& name) override {
         const auto [member, is_new] =
-            open_.back()->get_ref<json::object_t&>().emplace(std::move(name), nullptr);
+            open_.back().value->get_ref<json::object_t&>().emplace(std::move(name), nullptr);
         member_ = &member->second;
+        last_key = open_.back().key = &member->first;
         has_duplicate = !is_new;
         return is_new;
     }
     bool end_object() override { return close(); }
     bool start_array(std::size_t /*size*/) override { return open(json::array()); }
     bool end_array() override { return close(); }
-    bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
-                     const json::exception& /*error*/) override {
-        return false;
-    }
-
-    json built;
-    bool has_duplicate = false;
-
-  private:
-    json& place(json&& part) {
-        if (open_.empty()) return built = std::move(part);
-        if (!open_.back()->is_array()) return *member_ = std::move(part);
-        open_.back()->push_back(std::move(part));
-        return open_.back()->back();
-    }
-    bool put(json part) {
-        place(std::move(part));
-        return true;
-    }
-    bool open(json part) {
-        open_.push_back(&place(std::move(part)));
-        return true;
-    }
-    bool close() {
-        open_.pop_back();
-        return true;
-    }
-
-    std::vector<json*> open_;  ///< the arrays and objects around the next value
-    json* member_ = nullptr;   ///< the innermost one's member, if that is an object
-};
-
-/// Reads JSON up to the first key that its object already has.
-class DuplicateFinder : public nlohmann::json_sax<json> {
-  public:
-    explicit DuplicateFinder(std::string_view text) : stream_(std::string(text)) {
-        json::sax_parse(stream_, this);
-    }
-    bool null() override { return next(); }
-    bool boolean(bool /*value*/) override { return next(); }
-    bool number_integer(number_integer_t /*value*/) override { return next(); }
-    bool number_unsigned(number_unsigned_t /*value*/) override { return next(); }
-    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return next(); }
-    bool string(string_t& /*value*/) override { return next(); }
-    bool binary(binary_t& /*value*/) override { return next(); }
-    bool start_object(std::size_t /*size*/) override {
-        open_.push_back({});
-        return true;
-    }
-    bool key(string_t& name) override {
-        open_.back().key = name;
-        if (open_.back().keys.insert(name).second) return true;
-        // The stream was read up to this key.
-        position_ = static_cast<std::size_t>(stream_.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in));
-        return false;
-    }
-    bool end_object() override { return close(); }
-    bool start_array(std::size_t /*size*/) override {
-        open_.push_back({.is_array = true});
-        return true;
-    }
-    bool end_array() override { return close(); }
-    bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
-                     const json::exception& /*error*/) override {
-        return false;
-    }
-
-    [[nodiscard]] std::size_t position() const { return position_; }
-    /// Such as "cones[3].x".
-    [[nodiscard]] std::string path() const {
-        std::string path;
-        for (const Level& level : open_) {
-            if (level.is_array) {
-                path += fmt::format("[{}]", level.index);
-            } else {
-                path += (path.empty() ? "" : ".") + level.key;
-            }
-        }
-        return path;
-    }
-
-  private:
-    struct Level {
-        bool is_array = false;
-        std::size_t index = 0;
-        std::string key = {};
-        std::set<std::string> keys = {};
-    };
-    bool next() {
-        if (!open_.empty()) ++open_.back().index;
-        return true;
-    }
-    bool close() {
-        open_.pop_back();
-        return next();
-    }
-
-    std::istringstream stream_;
-    std::vector<Level> open_;
-    std::size_t position_ = 0;
-};
-
-/// Reads JSON only to find its first error.
-class ErrorFinder : public nlohmann::json_sax<json> {
-  public:
-    bool null() override { return true; }
-    bool boolean(bool /*value*/) override { return true; }
-    bool number_integer(number_integer_t /*value*/) override { return true; }
-    bool number_unsigned(number_unsigned_t /*value*/) override { return true; }
-    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return true; }
-    bool string(string_t& /*value*/) override { return true; }
-    bool binary(binary_t& /*value*/) override { return true; }
-    bool start_object(std::size_t /*size*/) override { return true; }
-    bool key(string_t& value) override {
-        last_key = value;
-        return true;
-    }
-    bool end_object() override { return true; }
-    bool start_array(std::size_t /*size*/) override { return true; }
-    bool end_array() override { return true; }
     bool parse_error(std::size_t position, const std::string& /*token*/,
                      const json::exception& error) override {
         characters_read = position;
@@ -171,9 +52,53 @@ class ErrorFinder : public nlohmann::json_sax<json> {
         return false;
     }
 
-    std::string last_key;
+    /// The place of the last key, such as "cones[3].x".
+    [[nodiscard]] std::string path() const {
+        std::string path;
+        for (const Level& level : open_) {
+            if (level.value->is_array()) {
+                path += fmt::format("[{}]", level.value->size() - 1);
+            } else {
+                path += (path.empty() ? "" : ".") + *level.key;
+            }
+        }
+        return path;
+    }
+
+    json built;
+    bool has_duplicate = false;
+    const std::string* last_key = nullptr;
     std::size_t characters_read = 0;  ///< with the first that does not fit; beyond the end if none
     bool overflow = false;            ///< a number beyond the range of double
+
+  private:
+    struct Level {
+        json* value;
+        const std::string* key;  ///< the last one of an object
+    };
+    json& place(json&& part) {
+        if (open_.empty()) return built = std::move(part);
+        json& around = *open_.back().value;
+        if (!around.is_array()) return *member_ = std::move(part);
+        around.push_back(std::move(part));
+        return around.back();
+    }
+    bool put(json part) {
+        place(std::move(part));
+        return true;
+    }
+    bool open(json part) {
+        json& placed = place(std::move(part));
+        open_.push_back({&placed, nullptr});
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    std::vector<Level> open_;  ///< the arrays and objects around the next value
+    json* member_ = nullptr;   ///< the innermost one's member, if that is an object
 };
 
 /// Whether the word around `position` is a number that JSON does not have, such as NaN.
@@ -190,16 +115,14 @@ bool spells_no_finite_number(std::string_view text, std::size_t position) {
 
 /// `first_line`: the number of the text's first line in the file.
 [[noreturn]] void fail_on_invalid_json(std::string_view text, const std::filesystem::path& file,
-                                       std::size_t first_line) {
-    ErrorFinder finder;
-    json::sax_parse(text, &finder);
-    const bool at_end = finder.characters_read > text.size();
-    const std::size_t position = finder.characters_read > 0 ? finder.characters_read - 1 : 0;
+                                       std::size_t first_line, const ValueBuilder& read) {
+    const bool at_end = read.characters_read > text.size();
+    const std::size_t position = read.characters_read > 0 ? read.characters_read - 1 : 0;
     const std::string_view before = text.substr(0, position);
     const std::size_t line =
         first_line + static_cast<std::size_t>(std::ranges::count(at_end ? text : before, '\n'));
     std::string reason;
-    if (finder.overflow || spells_no_finite_number(text, position)) {
+    if (read.overflow || spells_no_finite_number(text, position)) {
         reason = "must be a finite number";
     } else if (at_end) {
         reason = "the JSON ends too early";
@@ -207,14 +130,18 @@ bool spells_no_finite_number(std::string_view text, std::size_t position) {
         const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
         reason = fmt::format("not valid JSON at column {}", position - line_start + 1);
     }
-    throw InputError(file, line, finder.last_key, reason);
+    throw InputError(file, line, read.last_key == nullptr ? "" : *read.last_key, reason);
 }
 
 [[noreturn]] void fail_on_duplicate(std::string_view text, const std::filesystem::path& file,
-                                    std::size_t first_line) {
-    const DuplicateFinder finder(text);
-    const auto lines_before = std::ranges::count(text.substr(0, finder.position()), '\n');
-    throw InputError(file, first_line + static_cast<std::size_t>(lines_before), finder.path(),
+                                    std::size_t first_line, const ValueBuilder& read) {
+    std::istringstream stream{std::string(text)};
+    ValueBuilder again;
+    json::sax_parse(stream, &again);  // reads the stream up to the second key
+    const auto position =
+        static_cast<std::size_t>(stream.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in));
+    const auto lines_before = std::ranges::count(text.substr(0, position), '\n');
+    throw InputError(file, first_line + static_cast<std::size_t>(lines_before), read.path(),
                      "is there twice");
 }
 
@@ -222,8 +149,8 @@ bool spells_no_finite_number(std::string_view text, std::size_t position) {
 json parse(std::string_view text, const std::filesystem::path& file, std::size_t first_line) {
     ValueBuilder builder;
     if (json::sax_parse(text, &builder)) return std::move(builder.built);
-    if (builder.has_duplicate) fail_on_duplicate(text, file, first_line);
-    fail_on_invalid_json(text, file, first_line);
+    if (builder.has_duplicate) fail_on_duplicate(text, file, first_line, builder);
+    fail_on_invalid_json(text, file, first_line, builder);
 }
 
 std::ifstream open(const std::filesystem::path& file) {
@@ -248,11 +175,29 @@ std::string text_of(const std::filesystem::path& file) {
     return text;
 }
 
+constexpr std::size_t kMaxDistance = 2;
+
+/// Levenshtein distance without case: the number of letters to change, insert or leave out.
+std::size_t distance(std::string_view a, std::string_view b) {
+    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (lower(a[i]) == lower(b[j]) ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, diagonal + 1, row[j] + 1});
+        }
+    }
+    return row.back();
+}
+
 }  // namespace
 
 JsonNode JsonNode::member(std::string_view key) const {
     if (std::optional<JsonNode> found = find(key)) return *std::move(found);
-    throw InputError(origin_->file, origin_->line, member_key(key), "is missing");
+    fail_in(key, "is missing");
 }
 
 std::optional<JsonNode> JsonNode::find(std::string_view key) const {
@@ -340,6 +285,10 @@ void JsonNode::fail(const std::string& reason) const {
     throw InputError(origin_->file, origin_->line, key_, reason);
 }
 
+void JsonNode::fail_in(std::string_view key, const std::string& reason) const {
+    throw InputError(origin_->file, origin_->line, member_key(key), reason);
+}
+
 std::string JsonNode::member_key(std::string_view key) const {
     return key_.empty() ? std::string(key) : key_ + "." + std::string(key);
 }
@@ -349,6 +298,30 @@ std::size_t JsonNode::index_in(std::span<const std::string_view> names) const {
         value_->is_string() ? std::ranges::find(names, std::string_view(string())) : names.end();
     if (found == names.end()) fail(fmt::format("must be one of {}", fmt::join(names, ", ")));
     return static_cast<std::size_t>(found - names.begin());
+}
+
+std::string_view closest_name(std::string_view misspelt, std::span<const std::string_view> names) {
+    std::string_view closest;
+    // A short name has no similar one: every other short name is two letters away.
+    std::size_t least = std::min(kMaxDistance, misspelt.size() / 2) + 1;
+    for (const std::string_view name : names) {
+        if (misspelt.size() > name.size() + kMaxDistance) continue;
+        const std::size_t letters = distance(misspelt, name);
+        if (letters >= least) continue;
+        least = letters;
+        closest = name;
+    }
+    return closest;
+}
+
+void require_known_keys(const JsonNode& object, std::span<const std::string_view> keys) {
+    for (const std::string& key : object.keys()) {
+        if (std::ranges::find(keys, key) != keys.end()) continue;
+        const std::string_view meant = closest_name(key, keys);
+        object.member(key).fail(meant.empty()
+                                    ? fmt::format("is not a key here, only {}", fmt::join(keys, ", "))
+                                    : fmt::format("is not a key here; {} is", meant));
+    }
 }
 
 void for_each_json_line(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read) {
@@ -378,21 +351,21 @@ void with_json_file(const std::filesystem::path& file, const std::function<void(
     with_json_text(text_of(file), file, read);
 }
 
-void with_json_list_file(const std::filesystem::path& file,
-                         const std::function<void(const JsonNode&)>& read) {
-    const json value = parse(text_of(file), file, 1);
-    const JsonOrigin origin{file, 0};
-    const JsonNode node(value, origin);
-    (void)node.array_size();
-    read(node);
-}
-
 void with_json_text(std::string_view text, const std::filesystem::path& file,
                     const std::function<void(const JsonNode&)>& read) {
     const json value = parse(text, file, 1);
     const JsonOrigin origin{file, 0};
     const JsonNode node(value, origin);
     node.require_object();
+    read(node);
+}
+
+void with_json_list_file(const std::filesystem::path& file,
+                         const std::function<void(const JsonNode&)>& read) {
+    const json value = parse(text_of(file), file, 1);
+    const JsonOrigin origin{file, 0};
+    const JsonNode node(value, origin);
+    (void)node.array_size();
     read(node);
 }
 

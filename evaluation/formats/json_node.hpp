@@ -56,6 +56,8 @@ class JsonNode {
 
     [[nodiscard]] std::size_t line() const { return origin_->line; }
     [[noreturn]] void fail(const std::string& reason) const;
+    /// The same about a member, which may be absent.
+    [[noreturn]] void fail_in(std::string_view key, const std::string& reason) const;
 
   private:
     [[nodiscard]] std::string member_key(std::string_view key) const;
@@ -70,6 +72,15 @@ Choice JsonNode::one_of(const std::array<Choice, count>& choices) const {
     for (std::size_t i = 0; i < count; ++i) names[i] = to_string(choices[i]);
     return choices[index_in(names)];
 }
+
+/// The known name that a misspelt one most likely means: at most two letters wrong, missing, too many or in
+/// the wrong case. Empty if there is none.
+[[nodiscard]] std::string_view closest_name(std::string_view misspelt,
+                                            std::span<const std::string_view> names);
+
+/// Throws InputError if the object has a key that is not in `keys`. The error names the first such key and
+/// the most similar known one.
+void require_known_keys(const JsonNode& object, std::span<const std::string_view> keys);
 
 /// Calls `read` with the object of each line that is not blank, in order. Throws InputError if the file
 /// cannot be read or a line is not a JSON object.

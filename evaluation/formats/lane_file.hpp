@@ -50,6 +50,7 @@ struct LaneRecord {
 
 /// A bound of minus infinity (nothing proven) is left out. Throws InvalidInput if another number is not
 /// finite, InputError if the file cannot be written; an old file then stays unchanged.
+/// LaneAnswer::solved and LaneAnswer::merged are not stored.
 void write_lanes(const std::filesystem::path& file, std::span<const LaneRecord> records);
 
 /// One record as its line, without newline. Throws InvalidInput like write_lanes.

@@ -3,8 +3,7 @@
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/known_keys.hpp"
-#include "evaluation/formats/learned_costs_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,10 +1,8 @@
 #include "evaluation/formats/parameter_tag.hpp"
 
 #include "conelane/learned_costs.hpp"
-#include "evaluation/formats/json_node.hpp"
 #include "evaluation/input_error.hpp"
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -13,7 +11,6 @@
 namespace conelane {
 namespace {
 
-constexpr std::array kPairings{Pairing::near_far, Pairing::paper};
 constexpr const char* kDefault = "default";
 
 /// FNV-1a of "key=value;" for each parameter of the paper, and for each extra that differs from its default:
@@ -60,20 +57,6 @@ ParameterTag tag_of(const std::string& source, const RldParameters& parameters) 
     // The tag holds the file's name without its folder.
     const std::string name = source.empty() ? kDefault : std::filesystem::path(source).filename().string();
     return {name, hash_of(parameters), parameters.pairing};
-}
-
-ParameterTag read_parameter_tag(const JsonNode& json) {
-    ParameterTag tag;
-    if (const auto name = json.find("parameters")) tag.name = name->string();
-    if (const auto hash = json.find("parameters_hash")) tag.hash = hash->string();
-    if (const auto pairing = json.find("pairing")) tag.pairing = pairing->one_of(kPairings);
-    return tag;
-}
-
-void put_parameter_tag(nlohmann::ordered_json& json, const ParameterTag& tag) {
-    if (tag.name) json["parameters"] = *tag.name;
-    if (tag.hash) json["parameters_hash"] = *tag.hash;
-    if (tag.pairing) json["pairing"] = to_string(*tag.pairing);
 }
 
 void require_same_basis(const ClaimBasis& made, const ClaimBasis& checked, const std::filesystem::path& file,

@@ -7,11 +7,7 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 namespace conelane {
-
-class JsonNode;
 
 /// The parameters of a claim, so that the claim is not checked with others. Files of earlier versions and of
 /// other programs may lack parts of it.
@@ -26,10 +22,6 @@ struct ParameterTag {
 /// `source`: the argument of --params, or empty. For a file, the tag holds the name without the
 /// folder.
 [[nodiscard]] ParameterTag tag_of(const std::string& source, const RldParameters& parameters);
-
-/// The keys `parameters`, `parameters_hash` and `pairing`; each may be absent.
-[[nodiscard]] ParameterTag read_parameter_tag(const JsonNode& json);
-void put_parameter_tag(nlohmann::ordered_json& json, const ParameterTag& tag);
 
 /// How a claim was made, or how it is checked.
 struct ClaimBasis {

@@ -1,12 +1,13 @@
 #pragma once
 
 #include "evaluation/world/annotated_scene.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "evaluation/world/track.hpp"
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <istream>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -49,5 +50,18 @@ void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedSc
 
 /// Throws like write_scenes.
 void write_track_boundaries(const std::filesystem::path& file, const TrackBoundariesByName& tracks);
+
+/// Ids, in their order, of the scenes that were left out because their ground truth is degenerate (see
+/// is_degenerate), by track. The companion holds them in `left_out` of their track.
+using LeftOutScenes = std::map<std::string, std::vector<std::string>>;
+
+/// Writes a scenes file and its companion beside it: both completely, or both stay unchanged. The tracks of
+/// the scenes left out must be among the others. Throws like write_scenes.
+void write_scene_pair(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes,
+                      const TrackBoundariesByName& tracks, const LeftOutScenes& left_out);
+
+/// The scenes left out according to a companion; nothing if it has no such key. Throws InputError like
+/// read_track_boundaries.
+[[nodiscard]] LeftOutScenes read_left_out(const std::filesystem::path& companion);
 
 }  // namespace conelane

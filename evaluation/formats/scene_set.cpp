@@ -1,10 +1,8 @@
 #include "evaluation/formats/scene_set.hpp"
 
-#include "evaluation/formats/left_out_scenes.hpp"
-#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/scene_options_fields.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/formats/scene_pair.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -12,7 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace conelane {
 
@@ -81,13 +80,43 @@ std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
     return starts;
 }
 
-void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set) {
-    write_scene_set(scenes_file, set, {});
-}
-
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set,
                      const LeftOutScenes& left_out) {
     write_scene_pair(scenes_file, set.scenes, set.tracks, left_out);
+}
+
+void merge(LeftOutScenes& left_out, const LeftOutScenes& of_shard) {
+    for (const auto& [track, ids] : of_shard) {
+        std::vector<std::string>& all = left_out[track];
+        std::ranges::copy(ids, std::back_inserter(all));
+        std::ranges::sort(all);
+    }
+}
+
+std::string note_on(const LeftOutScenes& left_out) {
+    std::size_t count = 0;
+    std::string first;
+    for (const auto& [track, ids] : left_out) {
+        if (count == 0 && !ids.empty()) first = ids.front();
+        count += ids.size();
+    }
+    if (count == 0) return "";
+    return fmt::format("{} left out: the ground truth is degenerate; the first is {}",
+                       count == 1 ? "1 scene is" : fmt::format("{} scenes are", count), first);
+}
+
+std::string table_note_on(const LeftOutScenes& left_out) {
+    const std::string note = note_on(left_out);
+    return note.empty() ? "" : "    " + note + "\n";
+}
+
+SceneOptions as_recorded(SceneOptions options) {
+    if (!options.conditions.empty()) options.conditions = condition_names(options);
+    return options;
+}
+
+nlohmann::ordered_json scene_options_json(const SceneOptions& options) {
+    return value_json(as_recorded(options), "scenes");
 }
 
 }  // namespace conelane

@@ -182,4 +182,7 @@ Track read_pacsim_track(const std::filesystem::path& file) {
     return track;
 }
 
+constexpr TrackFormat kPacsimTracks{
+    .word = "pacsim", .what = "FILE", .reads = "PacSim, YAML", .ending = ".yaml", .read = read_pacsim_track};
+
 }  // namespace conelane

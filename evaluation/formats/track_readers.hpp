@@ -1,10 +1,8 @@
 #pragma once
 
-#include "evaluation/world/track.hpp"
+#include "evaluation/formats/track_spec.hpp"
 
-#include <cstddef>
 #include <filesystem>
-#include <vector>
 
 namespace conelane {
 
@@ -32,5 +30,10 @@ namespace conelane {
 /// counts them, except `unknown`. Ids count the cones in file order. It is an error if the colors of a closed
 /// course do not bound a ring, or contradict the direction of `car_start`.
 [[nodiscard]] Track read_eufs_track(const std::filesystem::path& file);
+
+// The sources of --tracks whose files are read here and in run_log.hpp.
+extern const TrackFormat kPacsimTracks;
+extern const TrackFormat kEufsTracks;
+extern const TrackFormat kRunTracks;
 
 }  // namespace conelane

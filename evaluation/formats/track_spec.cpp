@@ -1,15 +1,16 @@
 #include "evaluation/formats/track_spec.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/run_log.hpp"
 #include "evaluation/formats/track_readers.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -43,7 +44,7 @@ std::vector<std::string_view> comma_separated(std::string_view text) {
     }
 }
 
-std::vector<Track> generated(const std::string& spec, std::string_view names) {
+std::vector<Track> generated(const std::string& spec, const std::string& names) {
     std::vector<Track> tracks;
     std::set<std::string> loaded;
     for (const std::string_view item : comma_separated(names)) {
@@ -106,41 +107,76 @@ std::vector<Track> fsd(const std::string& spec, const std::string& where) {
     return tracks;
 }
 
-/// The track of a file, or of all files in a folder with this extension, sorted by name.
-std::vector<Track> of_files(const std::string& spec, const fs::path& where, std::string_view ending,
-                            Track (*read)(const fs::path&)) {
-    if (!fs::is_directory(where)) return {read(where)};
+/// The track of a file, or of all files in a folder with the format's ending, sorted by name.
+std::vector<Track> of_files(const std::string& spec, const fs::path& where, const TrackFormat& format) {
+    if (!fs::is_directory(where)) return {format.read(where)};
     std::set<fs::path> files;
     for (const fs::directory_entry& entry : fs::directory_iterator(where)) {
-        if (entry.path().extension() == ending) files.insert(entry.path());
+        if (entry.path().extension() == format.ending) files.insert(entry.path());
     }
-    if (files.empty()) fail(spec, fmt::format("{} holds no {} file", where.string(), ending));
+    if (files.empty()) fail(spec, fmt::format("{} holds no {} file", where.string(), format.ending));
     std::vector<Track> tracks;
-    tracks.reserve(files.size());
-    for (const fs::path& file : files) tracks.push_back(read(file));
+    for (const fs::path& file : files) tracks.push_back(format.read(file));
     return tracks;
+}
+
+constexpr TrackFormat kGeneratedTracks{
+    .word = "generated",
+    .what = "NAME[@SEED][,...]",
+    .reads = "courses by their names, the seed is 0 unless given; a wrong name lists them",
+    .load = generated};
+constexpr TrackFormat kFsdTracks{.word = "fsd",
+                                 .what = "DIR[:1,2]",
+                                 .reads = "FSD racetrack data set: all of a folder, or these numbers",
+                                 .load = fsd};
+
+/// "A, B and C" of what `text` says of each source.
+std::string listed(std::string_view last, const std::function<std::string(const TrackFormat&)>& text) {
+    std::string list;
+    for (const TrackFormat* format : track_formats()) {
+        if (!list.empty()) list += format == track_formats().back() ? last : ", ";
+        list += text(*format);
+    }
+    return list;
 }
 
 }  // namespace
 
+std::span<const TrackFormat* const> track_formats() {
+    static constexpr std::array kAll{&kGeneratedTracks, &kFsdTracks, &kPacsimTracks, &kEufsTracks,
+                                     &kRunTracks};
+    return kAll;
+}
+
+std::string track_grammar() {
+    return listed(" or ", [](const TrackFormat& one) { return fmt::format("{}:{}", one.word, one.what); });
+}
+
+std::string track_format_lines() {
+    std::string lines = "Tracks (a folder in place of a FILE: all its files of that type, by name):\n";
+    for (const TrackFormat* one : track_formats())
+        lines += fmt::format("  {:<29} {}\n", fmt::format("{}:{}", one->word, one->what), one->reads);
+    return lines;
+}
+
 std::vector<Track> load_tracks(const std::string& spec) {
     const std::size_t colon = spec.find(':');
-    const std::string kind = spec.substr(0, colon);
+    const std::string word = spec.substr(0, colon);
     const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);
-    if (what.empty())
+    if (what.empty()) {
         fail(spec,
-             "is not generated:NAME, fsd:DIR, fsd:DIR:1,2, pacsim:FILE, eufs:FILE or ftlog:FILE, "
-             "and instead of a FILE, a folder with such files");
+             fmt::format("is not {}, and instead of a FILE, a folder with such files", track_grammar()));
+    }
+    const auto format = std::ranges::find(track_formats(), word, &TrackFormat::word);
+    if (format == track_formats().end()) {
+        const auto words = [](const TrackFormat& one) { return std::string(one.word); };
+        fail(spec, fmt::format("'{}' is not one of {}", word, listed(" and ", words)));
+    }
     try {
-        if (kind == "generated") return generated(spec, what);
-        if (kind == "fsd") return fsd(spec, what);
-        if (kind == "pacsim") return of_files(spec, what, ".yaml", read_pacsim_track);
-        if (kind == "eufs") return of_files(spec, what, ".csv", read_eufs_track);
-        if (kind == "ftlog") return of_files(spec, what, ".json", read_run_log);
+        return (*format)->load ? (*format)->load(spec, what) : of_files(spec, what, **format);
     } catch (const fs::filesystem_error& error) {
         fail(spec, error.code().message());
     }
-    fail(spec, fmt::format("'{}' is not one of generated, fsd, pacsim, eufs and ftlog", kind));
 }
 
 std::vector<Track> load_tracks_aloud(const std::string& spec) {

@@ -246,6 +246,14 @@ std::string ChildProcess::end(double patience_ms) {
     return how;
 }
 
+void ChildProcess::end_failed(Outcome outcome, std::string& fault) {
+    constexpr double kPatience_ms = 100.0;
+    const bool is_ending = outcome == Outcome::closed_output || outcome == Outcome::closed_input;
+    const std::string how = end(is_ending ? kPatience_ms : 0.0);
+    if (is_ending && !how.empty()) fault += ", " + how;
+    if (const std::string words = last_words(); !words.empty()) fault += "; it said: " + words;
+}
+
 std::string ChildProcess::last_words() const {
     std::string words;
     std::size_t end = error_tail_.size();

@@ -46,6 +46,9 @@ class ChildProcess {
     /// Closes its input, waits for its end up to this limit, kills the rest of its group, and returns how it
     /// ended: "exit code 3", "signal 11"; empty if it had to be killed.
     std::string end(double patience_ms);
+    /// Ends it after a failure, waiting only if the outcome says that it is ending. Adds to the fault how it
+    /// ended and what it said.
+    void end_failed(Outcome outcome, std::string& fault);
 
     /// The largest resident memory of any of its processes, by the operating system [bytes]; known after
     /// `end`, 0 before.

@@ -1,8 +1,8 @@
 #include "evaluation/outside/outside_detector.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/json_fields.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/outside/detector_card_fields.hpp"
 #include "evaluation/outside/solver_program.hpp"
 
 #include <algorithm>
@@ -150,10 +150,7 @@ std::optional<fs::path> card_path(const OutsideDetector& detector) {
 
 DetectorCard read_detector_card(const fs::path& file) {
     DetectorCard card;
-    with_json_file(file, [&](const JsonNode& json) {
-        JsonFieldReader reader(json);
-        fields_of(card, reader);
-    });
+    with_json_file(file, [&](const JsonNode& json) { read_value(json, card); });
     return card;
 }
 

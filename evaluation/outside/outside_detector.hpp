@@ -2,12 +2,10 @@
 
 #include "conelane/formulation.hpp"
 
-#include <concepts>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 namespace conelane {
@@ -24,18 +22,6 @@ struct DetectorCard {
     /// One line below a table: "ft-fsd-path-planning; MIT; no color; ...".
     [[nodiscard]] std::string summary() const;
 };
-
-/// The fields of its file, see json_fields.hpp.
-template <typename Card, typename Fields>
-requires std::same_as<std::remove_const_t<Card>, DetectorCard>
-void fields_of(Card& card, Fields& fields) {
-    fields.maybe("name", card.name);
-    fields.maybe("address", card.address);
-    fields.maybe("licence", card.licence);
-    fields.maybe("colour_used", card.color_used);
-    fields.maybe("history_used", card.history_used);
-    fields.maybe("training_courses", card.training_courses);
-}
 
 /// A detector that is not part of this program.
 struct OutsideDetector {

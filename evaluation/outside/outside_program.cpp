@@ -102,19 +102,9 @@ OutsideProgram::Attempt OutsideProgram::ask(const Scene& scene, double limit_ms)
             attempt.fault = std::string("its answer is wrong: ") + wrong.what();
         }
     }
-    const bool is_ending = reply.outcome == ChildProcess::Outcome::closed_output ||
-                           reply.outcome == ChildProcess::Outcome::closed_input;
-    end_after(attempt.fault, is_ending);
-    return attempt;
-}
-
-void OutsideProgram::end_after(std::string& fault, bool is_ending) {
-    constexpr double kPatience_ms = 100.0;
-    const std::string how = child_->end(is_ending ? kPatience_ms : 0.0);
-    if (is_ending && !how.empty()) fault += ", " + how;
-    const std::string words = child_->last_words();
-    if (!words.empty()) fault += "; it said: " + words;
+    child_->end_failed(reply.outcome, attempt.fault);
     child_.reset();
+    return attempt;
 }
 
 void OutsideProgram::count_failure(double lost_ms) {
@@ -129,7 +119,8 @@ void OutsideProgram::count_failure(double lost_ms) {
 }
 
 LaneRecord OutsideProgram::error(const Scene& scene, double latency_ms, const std::string& message) const {
-    LaneRecord record{scene.id, name_, {}, latency_ms, {}};
+    LaneRecord record{
+        .scene = scene.id, .detector = name_, .answer = {}, .latency_ms = latency_ms, .nearest = {}};
     record.answer.status = LaneStatus::error;
     record.answer.message = message;
     return record;

@@ -52,7 +52,6 @@ class OutsideProgram {
     };
     Attempt ask(const Scene& scene, double limit_ms);
     std::string start(const Scene& scene);
-    void end_after(std::string& fault, bool is_ending);
     void count_failure(double lost_ms);
     [[nodiscard]] LaneRecord error(const Scene& scene, double latency_ms, const std::string& message) const;
 

@@ -1,7 +1,6 @@
 #include "evaluation/outside/outside_solver.hpp"
 
-#include "evaluation/outside/connecting_flow.hpp"
-#include "evaluation/outside/permuted_program.hpp"
+#include "evaluation/outside/solver_input.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

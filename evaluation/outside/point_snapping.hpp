@@ -2,9 +2,13 @@
 
 #include "conelane/scene.hpp"
 #include "evaluation/formats/lane_file.hpp"
+#include "evaluation/outside/outside_detector.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include <cstddef>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace conelane {
 
@@ -26,5 +30,13 @@ inline constexpr double kMaxCoordinate_m = 1e7;
 /// empty. Such a tangle is not a lane, and its area takes minutes. Precondition: fault_of finds nothing.
 inline constexpr std::size_t kMaxMeetings = 500;
 [[nodiscard]] std::string tangle_of(const LaneRecord& record, const Scene& scene);
+
+/// The answers of a detector `lanes:NAME=FILE` to these scenes, in their order and under its name. A scene
+/// without an answer in the file gets status error and counts with the time limit of a program from outside.
+/// Answers to other scenes are ignored, because a shard has only some scenes. Throws InputError naming file,
+/// line and key: for invalid JSON, a scene answered twice, a cone that its scene does not have, or a file
+/// that answers none of these scenes.
+[[nodiscard]] std::vector<LaneRecord> read_finished_lanes(const OutsideDetector& detector,
+                                                          std::span<const AnnotatedScene> scenes);
 
 }  // namespace conelane

@@ -175,18 +175,14 @@ std::string SolverProgram::file(const char* ending) const {
 }
 
 void SolverProgram::end() {
-    std::string unused;
-    if (child_) end_child(patience_.end_ms, unused);
+    if (!child_) return;
+    child_->end(patience_.end_ms);
+    forget_child();
 }
 
-void SolverProgram::end_child(double patience_ms, std::string& fault) {
-    const std::string how = child_->end(patience_ms);
+/// Precondition: it has ended.
+void SolverProgram::forget_child() {
     peak_bytes_ = std::max(peak_bytes_, child_->peak_bytes());
-    if (!fault.empty()) {
-        if (patience_ms > 0.0 && !how.empty()) fault += ", " + how;
-        const std::string words = child_->last_words();
-        if (!words.empty()) fault += "; it said: " + words;
-    }
     child_.reset();
 }
 
@@ -206,12 +202,11 @@ std::string SolverProgram::run_once(const SolverQuestion& question) {
     // Its output may be closed shortly before it ends.
     const double patience_ms = fault.empty() ? std::max(0.0, deadline.remaining_ms()) : 0.0;
     const std::string how = child_->end(std::min(patience_ms, kNoLimit_ms));
-    peak_bytes_ = std::max(peak_bytes_, child_->peak_bytes());
     if (fault.empty() && how != "exit code 0")
         fault = how.empty() ? "the program closed its output and did not end" : "the program ended, " + how;
     if (const std::string words = child_->last_words(); !fault.empty() && !words.empty())
         fault += "; it said: " + words;
-    child_.reset();
+    forget_child();
     return fault;
 }
 
@@ -224,8 +219,6 @@ std::string SolverProgram::converse(const SolverQuestion& question, SolutionFile
     const ChildProcess::Reply reply =
         child_->ask(to_line(question_json(question, file(".mps"), file(".sol"))) + '\n', wait_ms);
     std::string fault = fault_of(reply.outcome, wait_ms);
-    bool is_ending = reply.outcome == ChildProcess::Outcome::closed_output ||
-                     reply.outcome == ChildProcess::Outcome::closed_input;
     if (fault.empty()) {
         try {
             const Told said = read_line(reply.line, told);
@@ -238,11 +231,10 @@ std::string SolverProgram::converse(const SolverQuestion& question, SolutionFile
             return "";
         } catch (const InputError& wrong) {
             fault = wrong.what();
-            is_ending = false;
         }
     }
-    constexpr double kPatience_ms = 100.0;
-    end_child(is_ending ? kPatience_ms : 0.0, fault);
+    child_->end_failed(reply.outcome, fault);
+    forget_child();
     return fault;
 }
 

@@ -75,7 +75,7 @@ class SolverProgram {
     [[nodiscard]] std::string run_once(const SolverQuestion& question);
     [[nodiscard]] std::string converse(const SolverQuestion& question, SolutionFile& told,
                                        bool& needs_no_file);
-    void end_child(double patience_ms, std::string& fault);
+    void forget_child();
     [[nodiscard]] std::string file(const char* ending) const;
 
     std::string command_;

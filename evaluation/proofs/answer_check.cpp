@@ -1,7 +1,7 @@
 #include "evaluation/proofs/answer_check.hpp"
 
 #include "conelane/check.hpp"
-#include "evaluation/world/cone_index.hpp"
+#include "evaluation/world/ground_truth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,19 +16,21 @@ namespace {
 /// The fault of a lane that was found, in words; empty if there is none.
 std::string objection(const LaneRecord& record, const Scene& seen, RldParameters parameters) {
     const LaneAnswer& answer = record.answer;
-    if (answer.other_d_near_m) {
-        if (answer.optimality) return "the lane is optimal for another d_near than that of the parameters";
-        parameters.d_near = *answer.other_d_near_m;
+    const SolvedLane solved = answer.solved.value_or(SolvedLane{answer.lane, answer.optimality});
+    if (solved.d_near_m) {
+        if (answer.optimality || solved.optimality)
+            return "the lane is optimal for another d_near than that of the parameters";
+        parameters.d_near = *solved.d_near_m;
     }
-    const Lane& lane = answer.uncut ? answer.uncut->lane : answer.lane;
-    const std::optional<LaneGraph> graph = lane_graph_of(lane, seen);
+    const std::optional<LaneGraph> graph = lane_graph_of(solved.lane, seen);
     if (!graph) return "the lane has a cone that the method was not given, or one twice in a row";
-    if (answer.uncut &&
-        (!record.nearest || cut_to_nearest(lane, seen, *record.nearest, parameters.d_max) != answer.lane)) {
+    const bool is_cut = answer.solved && (!solved.d_near_m || solved.lane != answer.lane);
+    if (is_cut && (!record.nearest ||
+                   cut_to_nearest(solved.lane, seen, *record.nearest, parameters.d_max) != answer.lane)) {
         return "the lane is not what the cut to its cone set leaves";
     }
     CheckReport report;
-    if (const auto& optimality = answer.uncut ? answer.uncut->optimality : answer.optimality) {
+    if (const auto& optimality = solved.optimality) {
         Claim claim{optimality->optimal, optimality->objective, {}};
         if (std::isfinite(optimality->bound)) claim.bound = optimality->bound;
         report = check(seen, parameters, *graph, claim);

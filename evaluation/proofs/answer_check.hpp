@@ -16,9 +16,9 @@ namespace conelane {
 
 /// Checks the answer of an RLD detector by the independent checker: every constraint, the stated objective,
 /// bound and optimality. `seen`: the scene among whose cones the lane was found. If the lane was cut, the
-/// uncut lane is checked, and the cut must give the lane. An answer that passes is marked as checked; another
-/// one gets status error with the checker's first objection as its message. A record without a lane stays
-/// unchanged.
+/// lane before the cut is checked, and the cut must give the lane. An answer that passes is marked as
+/// checked; another one gets status error with the checker's first objection as its message. A record without
+/// a lane stays unchanged.
 void check_answer(LaneRecord& record, const Scene& seen, const RldParameters& parameters);
 
 }  // namespace conelane

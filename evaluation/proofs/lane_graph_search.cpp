@@ -21,7 +21,7 @@ constexpr std::uint64_t kStepsBetweenLooksAtTheClock = 1024;
 
 /// Costs do not decide whether there is a lane graph, and some take long to compute.
 RldParameters without_costs(RldParameters parameters) {
-    parameters.w_v = 0.0;
+    parameters.facing_weight = 0.0;
     parameters.w_color = 0.0;
     parameters.learned_costs.reset();
     return parameters;

@@ -2,7 +2,7 @@
 
 #include "conelane/scene.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "evaluation/world/track.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -55,8 +55,9 @@ class Grid {
     }
 
   private:
-    Point lowest_ = Point::Constant(std::numeric_limits<double>::infinity());
-    Point highest_ = Point::Constant(-std::numeric_limits<double>::infinity());
+    static constexpr double kInfinity_m = std::numeric_limits<double>::infinity();
+    Point lowest_{kInfinity_m, kInfinity_m};
+    Point highest_{-kInfinity_m, -kInfinity_m};
 };
 
 /// All loops are declared clockwise, so a clockwise turn counts +1 and a counter-clockwise turn -1; the

@@ -6,7 +6,7 @@
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "evaluation/world/track.hpp"
 
 #include <array>
 #include <cstddef>

@@ -60,6 +60,18 @@ double shifted_geometric_mean(std::span<const double> sample, double shift) {
     return std::exp(logarithms / static_cast<double>(sample.size())) - shift;
 }
 
+std::optional<double> Sample::mean() const {
+    return values_.empty() ? std::nullopt : std::optional(conelane::mean(values_));
+}
+
+std::optional<double> Sample::median() const {
+    return values_.empty() ? std::nullopt : std::optional(conelane::median(values_));
+}
+
+std::optional<double> Sample::quantile(double share) const {
+    return values_.empty() ? std::nullopt : std::optional(conelane::quantile(values_, share));
+}
+
 LatencyStatistics latency_statistics(std::span<const double> latencies_ms) {
     LatencyStatistics result;
     result.median_ms = median(latencies_ms);

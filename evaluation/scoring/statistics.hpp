@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace conelane {
 
@@ -25,6 +27,21 @@ inline constexpr double kGeometricMeanShift_ms = 1.0;
 
 /// exp(mean of log(x + shift)) - shift. Precondition: every value is above -shift.
 [[nodiscard]] double shifted_geometric_mean(std::span<const double> sample, double shift);
+
+/// Values of which there may be none: each statistic is absent then.
+class Sample {
+  public:
+    void add(std::optional<double> value) {
+        if (value) values_.push_back(*value);
+    }
+    [[nodiscard]] const std::vector<double>& values() const { return values_; }
+    [[nodiscard]] std::optional<double> mean() const;
+    [[nodiscard]] std::optional<double> median() const;
+    [[nodiscard]] std::optional<double> quantile(double share) const;
+
+  private:
+    std::vector<double> values_;
+};
 
 /// The statistics that tables show of times [ms].
 struct LatencyStatistics {

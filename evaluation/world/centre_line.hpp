@@ -1,8 +1,11 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "evaluation/world/track.hpp"
+#include "model/geometry.hpp"
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 namespace conelane {
@@ -23,5 +26,19 @@ inline constexpr double kMinEvery_m = 0.01;
 /// Throws InvalidInput if `every_m` is not finite or below kMinEvery_m (key `every_m`), or a boundary has
 /// fewer than two cones (three on a closed course), no length, or more than kMaxBoundary_m (`left`, `right`).
 [[nodiscard]] std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double every_m);
+
+/// Indices of positions on the left and on the right boundary that face each other.
+struct FacingPlaces {
+    std::size_t left;
+    std::size_t right;
+};
+
+/// The monotone matching of two densely sampled boundaries with the least sum of squared distances between
+/// matched positions (symmetric dynamic time warping: a step on both sides counts as one on each). Every
+/// position is matched at least once, from the first pair to the last. Of equally good steps, one on both
+/// sides comes first, then one on the left. Takes one byte for each pair of positions. Precondition: neither
+/// boundary is empty.
+[[nodiscard]] std::vector<FacingPlaces> match_boundaries(std::span<const Point> left,
+                                                         std::span<const Point> right);
 
 }  // namespace conelane

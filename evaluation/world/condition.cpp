@@ -11,9 +11,19 @@ namespace conelane {
 std::span<const Condition> named_conditions() {
     constexpr double kDegree_rad = std::numbers::pi / 180.0;
     static const std::array<Condition, 3> conditions{{
-        {"paper", 0.0, 0.0, 0.0, 0.0, false},
-        {"car", 0.1, 0.3, 5.0 * kDegree_rad, 0.05, true},
-        {"harsh", 0.2, 0.5, 8.0 * kDegree_rad, 0.1, true},
+        {.name = "paper"},
+        {.name = "car",
+         .noise_sigma_m = 0.1,
+         .pose_noise_lateral_m = 0.3,
+         .pose_noise_yaw_rad = 5.0 * kDegree_rad,
+         .miss_rate = 0.05,
+         .persistent = true},
+        {.name = "harsh",
+         .noise_sigma_m = 0.2,
+         .pose_noise_lateral_m = 0.5,
+         .pose_noise_yaw_rad = 8.0 * kDegree_rad,
+         .miss_rate = 0.1,
+         .persistent = true},
     }};
     return conditions;
 }

@@ -63,7 +63,8 @@ ConeId draw_new_id(SceneGenerator& generator, std::int64_t space, std::unordered
 }
 
 Course make_course(const Track& track, const SceneOptions& options) {
-    Course course{track, boundaries(track), track.cones, {}, {}};
+    Course course{
+        .track = track, .polylines = boundaries(track), .cones = track.cones, .boundary_ids = {}, .lap = {}};
     SceneGenerator generator = generator_for(fmt::format("{}/{}/ids", track.name, options.seed));
     std::unordered_set<ConeId> used;
     for (Cone& cone : course.cones) {

@@ -5,7 +5,6 @@
 #include "evaluation/world/scene_draws.hpp"
 #include "evaluation/world/scene_options.hpp"
 #include "evaluation/world/track.hpp"
-#include "evaluation/world/track_boundaries.hpp"
 
 #include <cstddef>
 #include <cstdint>

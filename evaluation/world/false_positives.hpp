@@ -1,11 +1,15 @@
 #pragma once
 
 #include "evaluation/world/course.hpp"
+#include "evaluation/world/scene_draws.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <unordered_set>
 #include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
 
 namespace conelane {
 
@@ -29,5 +33,17 @@ class FalsePositives {
 [[nodiscard]] std::vector<Cone> persistent_false_positives(const Course& course, const SceneOptions& options,
                                                            const Condition& condition, double rate,
                                                            double range_m);
+
+/// The wanted number of persistent points in view from one place.
+struct PersistentView {
+    HalfDisc view;
+    double expected_points = 0.0;
+};
+
+/// Points drawn once in the world that `views` cover. Their density at a place is the mean of the densities
+/// that the views containing it want, so each view is expected to hold about its number, exactly so if all
+/// want the same. All views have one radius, that of the first.
+[[nodiscard]] std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
+                                                        boost::random::mt19937_64& random);
 
 }  // namespace conelane

@@ -1,7 +1,7 @@
 #include "evaluation/world/generated_tracks.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/world/drawn_layouts.hpp"
+#include "evaluation/seeded_random.hpp"
 #include "evaluation/world/track_layouts.hpp"
 
 #include <algorithm>
@@ -12,8 +12,6 @@
 #include <string_view>
 #include <utility>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/seed_seq.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 
@@ -31,13 +29,7 @@ constexpr double kStrayClearance_m = 1.0;  ///< from every other cone at least
 /// each other.
 class Draw {
   public:
-    Draw(const std::string& name, std::uint64_t seed) {
-        std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
-                                         static_cast<std::uint32_t>(seed >> 32U)};
-        for (const char letter : name) words.push_back(static_cast<unsigned char>(letter));
-        boost::random::seed_seq sequence(words.begin(), words.end());
-        generator_.seed(sequence);
-    }
+    Draw(const std::string& name, std::uint64_t seed) : generator_(generator_of(name, seed)) {}
     double uniform(double low, double high) {
         return boost::random::uniform_real_distribution<double>(low, high)(generator_);
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "conelane/point.hpp"
+#include "model/geometry.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -35,5 +36,17 @@ inline double rounded(double value, double steps_per_unit) {
 inline Point rounded(const Point& point) {
     return {rounded(point.x(), 1e6), rounded(point.y(), 1e6)};
 }
+
+/// The closed half disc ahead of a car.
+struct HalfDisc {
+    Point centre;
+    Point heading;
+    double radius_m;
+
+    [[nodiscard]] bool contains(const Point& point) const {
+        const Point offset = point - centre;
+        return heading.dot(offset) >= 0.0 && offset.squaredNorm() <= radius_m * radius_m;
+    }
+};
 
 }  // namespace conelane

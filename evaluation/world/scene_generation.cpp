@@ -1,23 +1,278 @@
 #include "evaluation/world/scene_generation.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/seeded_random.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/course.hpp"
 #include "evaluation/world/false_positives.hpp"
-#include "evaluation/world/scene_maker.hpp"
+#include "evaluation/world/ground_truth.hpp"
+#include "evaluation/world/scene_draws.hpp"
+#include "model/geometry.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <future>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
+#include <boost/random/beta_distribution.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 
 namespace conelane {
 namespace {
+
+/// Data that the scenes of one lap share.
+struct Lap {
+    Condition condition;
+    double rate;
+    double range_m;
+    std::vector<Cone> persistent;  ///< false positives in the world
+};
+
+/// The condition that adds nothing to the id of a scene.
+constexpr std::string_view kUndisturbed = "paper";
+
+std::string rate_text(double rate) {
+    std::string text = fmt::format("{}", rate);
+    if (text.find('e') != std::string::npos) return text;
+    const std::size_t point = text.find('.');
+    if (point == std::string::npos) return text + ".00";
+    text.append(2 - std::min<std::size_t>(2, text.size() - point - 1), '0');
+    return text;
+}
+
+/// One scene of a lap: the steps from its pose to the cones that the car sees.
+class SceneMaker {
+  public:
+    SceneMaker(const Course& course, const SceneOptions& options, const Lap& lap, const Viewpoint& viewpoint,
+               std::size_t pose_index)
+        : course_(course),
+          options_(options),
+          lap_(lap),
+          viewpoint_(viewpoint),
+          pose_index_(pose_index),
+          places_(places_of(course, viewpoint)) {}
+
+    /// Nothing if a run of the ground truth has fewer than two cones, or no cone is seen. A degenerate ground
+    /// truth is left out of its scene.
+    [[nodiscard]] std::optional<AnnotatedScene> make() const {
+        AnnotatedScene result;
+        result.track = course_.track.name;
+        result.false_positive_rate = lap_.rate;
+        result.range_m = lap_.range_m;
+        result.seed = options_.seed;
+        result.condition = lap_.condition.name;
+        Scene& scene = result.scene;
+        scene.id = id();
+        scene.pose = disturbed(viewpoint_.pose);
+        const HalfDisc view{scene.pose.position, scene.pose.heading(), lap_.range_m};
+        const std::vector<Sight> sights = look(view);
+        const RunFrame* const frame = viewpoint_.frame;
+        if (frame != nullptr) result.travelled_m = rounded(frame->travelled_m, 1e6);
+        if (frame != nullptr || !lap_.condition.name.empty() || lap_.condition.persistent) {
+            result.missed = missed_cones(sights);
+        }
+        scene.cones = seen_cones(sights, scene.pose.position);
+        mistake_colors(scene.cones);
+        hide_colors(scene.cones);
+        if (course_.track.driven.empty()) {
+            Lane lane = ground_truth(sights, scene);
+            if (lane.left.size() < 2 || lane.right.size() < 2) return std::nullopt;
+            result.ground_truth = std::move(lane);
+        } else if (scene.cones.empty()) {
+            return std::nullopt;
+        }
+        add_false_positives(scene.cones, view);
+        state_covariances(scene);
+        draw_confidences(scene.cones);
+        SceneGenerator order = generator("order");
+        shuffle(scene.cones, order);
+        if (options_.nearest) {
+            const bool known = result.ground_truth.has_value();
+            result.ground_truth = ground_truth_of_nearest(result, *options_.nearest);
+            if (known && !result.ground_truth) return std::nullopt;
+            scene = nearest_ahead(scene, *options_.nearest);
+        }
+        if (result.ground_truth && is_degenerate(*result.ground_truth, scene)) result.ground_truth.reset();
+        return result;
+    }
+
+  private:
+    [[nodiscard]] SceneGenerator generator(std::string_view purpose) const {
+        return generator_for(fmt::format("{}/{}/{}/{}/{}/{}", course_.track.name, pose_index_, lap_.rate,
+                                         lap_.range_m, options_.seed, purpose));
+    }
+
+    [[nodiscard]] std::string id() const {
+        std::string id = fmt::format("{}/pose_{:04}/fp_{}/range_{}", course_.track.name, pose_index_,
+                                     rate_text(lap_.rate), lap_.range_m);
+        const Condition& condition = lap_.condition;
+        if (condition.name.empty()) {
+            for (const std::string& part : disturbances(condition)) id += "/" + part;
+        } else if (condition.name != kUndisturbed) {
+            id += "/" + condition.name;
+        }
+        if (options_.color_error_rate > 0.0) id += fmt::format("/color_error_{}", options_.color_error_rate);
+        if (options_.color_unknown_rate > 0.0)
+            id += fmt::format("/color_unknown_{}", options_.color_unknown_rate);
+        if (options_.with_confidence) id += "/confidence";
+        if (options_.nearest) id += fmt::format("/nearest_{}", *options_.nearest);
+        return id;
+    }
+
+    [[nodiscard]] Pose disturbed(Pose pose) const {
+        const Condition& condition = lap_.condition;
+        if (condition.pose_noise_lateral_m == 0.0 && condition.pose_noise_yaw_rad == 0.0) return pose;
+        SceneGenerator random = generator("pose noise");
+        boost::random::normal_distribution<double> standard;
+        const double to_left_m = condition.pose_noise_lateral_m * standard(random);
+        const Point heading = pose.heading();
+        pose.position = rounded(pose.position + to_left_m * Point(-heading.y(), heading.x()));
+        pose.yaw_rad = rounded(pose.yaw_rad + condition.pose_noise_yaw_rad * standard(random), 1e9);
+        return pose;
+    }
+
+    /// Decides for each map point whether, where and how it is seen.
+    [[nodiscard]] std::vector<Sight> look(const HalfDisc& view) const {
+        SceneGenerator random = generator("misses");
+        boost::random::uniform_01<double> uniform;
+        std::vector<Sight> sights(course_.cones.size(), Sight::out_of_view);
+        for (std::size_t i = 0; i < sights.size(); ++i) {
+            if (!view.contains(places_[i].value_or(course_.cones[i].position))) continue;
+            if (!places_[i]) {
+                sights[i] = Sight::unmapped;
+                continue;
+            }
+            const double miss_rate = lap_.condition.miss_rate;
+            const bool missed = miss_rate > 0.0 && uniform(random) < miss_rate;
+            sights[i] = missed ? Sight::missed : Sight::seen;
+        }
+        return sights;
+    }
+
+    [[nodiscard]] std::vector<Cone> missed_cones(const std::vector<Sight>& sights) const {
+        std::vector<Cone> cones;
+        for (std::size_t i = 0; i < sights.size(); ++i) {
+            if (sights[i] != Sight::missed && sights[i] != Sight::unmapped) continue;
+            cones.push_back(course_.cones[i]);
+            cones.back().position = places_[i].value_or(course_.cones[i].position);
+        }
+        return cones;
+    }
+
+    [[nodiscard]] std::vector<Cone> seen_cones(const std::vector<Sight>& sights, const Point& car) const {
+        SceneGenerator random = generator("position noise");
+        boost::random::normal_distribution<double> standard;
+        std::vector<Cone> cones;
+        for (std::size_t i = 0; i < sights.size(); ++i) {
+            if (sights[i] != Sight::seen) continue;
+            cones.push_back(course_.cones[i]);
+            cones.back().position = *places_[i];
+            const double distance_m = (cones.back().position - car).norm();
+            if (const double sigma_m = lap_.condition.noise_m(distance_m); sigma_m > 0.0) {
+                const double x_m = sigma_m * standard(random);
+                const double y_m = sigma_m * standard(random);
+                cones.back().position = rounded(cones.back().position + Point(x_m, y_m));
+            }
+        }
+        return cones;
+    }
+
+    /// By where a cone was seen, as a sensor states it: false positives have covariances of the same kind.
+    void state_covariances(Scene& scene) const {
+        if (lap_.condition.noise_by_range == 0.0) return;
+        for (Cone& cone : scene.cones) {
+            const double sigma_m = lap_.condition.noise_m((cone.position - scene.pose.position).norm());
+            const double variance_m2 = rounded(sigma_m * sigma_m, 1e6);
+            cone.position_covariance = PositionCovariance{variance_m2, 0.0, variance_m2};
+        }
+    }
+
+    void mistake_colors(std::vector<Cone>& cones) const {
+        if (options_.color_error_rate == 0.0) return;
+        SceneGenerator random = generator("color errors");
+        boost::random::uniform_01<double> uniform;
+        for (Cone& cone : cones) {
+            if (uniform(random) >= options_.color_error_rate) continue;
+            if (cone.color == ConeColor::blue) {
+                cone.color = ConeColor::yellow;
+            } else if (cone.color == ConeColor::yellow) {
+                cone.color = ConeColor::blue;
+            }
+        }
+    }
+
+    void hide_colors(std::vector<Cone>& cones) const {
+        if (options_.color_unknown_rate == 0.0) return;
+        SceneGenerator random = generator("unknown colors");
+        boost::random::uniform_01<double> uniform;
+        for (Cone& cone : cones) {
+            if (uniform(random) < options_.color_unknown_rate) cone.color = ConeColor::unknown;
+        }
+    }
+
+    void draw_confidences(std::vector<Cone>& cones) const {
+        if (!options_.with_confidence) return;
+        SceneGenerator random = generator("confidences");
+        boost::random::beta_distribution<double> of_boundary(5.0, 2.0);
+        boost::random::beta_distribution<double> of_others(2.0, 4.0);
+        for (Cone& cone : cones) {
+            const bool real = course_.boundary_ids.contains(cone.id);
+            cone.confidence = rounded(real ? of_boundary(random) : of_others(random), 1e3);
+        }
+    }
+
+    [[nodiscard]] Lane ground_truth(const std::vector<Sight>& sights, const Scene& scene) const {
+        Lane lane = seen_lane(course_, sights, scene.pose.position);
+        even_far_ends(lane, scene);
+        return lane;
+    }
+
+    void add_false_positives(std::vector<Cone>& cones, const HalfDisc& view) const {
+        if (lap_.condition.persistent) {
+            std::ranges::copy_if(lap_.persistent, std::back_inserter(cones),
+                                 [&](const Cone& cone) { return view.contains(cone.position); });
+        } else {
+            add_fresh_false_positives(cones, view);
+        }
+    }
+
+    /// Uniform in the half disc, by rejection.
+    void add_fresh_false_positives(std::vector<Cone>& cones, const HalfDisc& view) const {
+        const long count = false_positives_to(static_cast<double>(cones.size()), lap_.rate);
+        SceneGenerator random = generator("false positives");
+        boost::random::uniform_real_distribution<double> ahead_m(0.0, view.radius_m);
+        boost::random::uniform_real_distribution<double> left_m(-view.radius_m, view.radius_m);
+        const Point to_left(-view.heading.y(), view.heading.x());
+        FalsePositives false_positives(course_, options_.with_color);
+        for (long i = 0; i < count; ++i) {
+            Point position;
+            do {
+                const double ahead = ahead_m(random);
+                const double left = left_m(random);
+                position = rounded(view.centre + ahead * view.heading + left * to_left);
+            } while (!view.contains(position));
+            cones.push_back(false_positives.draw(position, random));
+        }
+    }
+
+    const Course& course_;
+    const SceneOptions& options_;
+    const Lap& lap_;
+    const Viewpoint& viewpoint_;
+    std::size_t pose_index_;
+    std::vector<std::optional<Point>> places_;  ///< of the course's cones on the map
+};
 
 constexpr double kMaxCoordinate_m = 1e8;
 /// Travel between the poses whose views decide where persistent false positives are.
@@ -91,7 +346,7 @@ std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
     std::atomic<std::size_t> next = 0;
     const auto work = [&] {
         for (std::size_t pose = next++; pose < made.size(); pose = next++) {
-            made[pose] = make_scene(*course_, options_, shared, viewpoints_[pose], pose);
+            made[pose] = SceneMaker(*course_, options_, shared, viewpoints_[pose], pose).make();
         }
     };
     std::vector<std::future<void>> others(
@@ -110,7 +365,7 @@ bool TrackLaps::is_empty(std::size_t lap) const {
     if (!course_) return true;
     const Lap shared = lap_of(*course_, options_, conditions_, lap);
     for (std::size_t pose = 0; pose < viewpoints_.size(); ++pose) {
-        const auto scene = make_scene(*course_, options_, shared, viewpoints_[pose], pose);
+        const auto scene = SceneMaker(*course_, options_, shared, viewpoints_[pose], pose).make();
         if (scene && (scene->ground_truth || !course_->track.driven.empty())) return false;
     }
     return true;

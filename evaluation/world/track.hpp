@@ -1,12 +1,25 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "model/geometry.hpp"
 
+#include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace conelane {
+
+/// The whole annotated boundaries of a track in driving order, for the centre line and for divergence.
+struct TrackBoundaries {
+    std::vector<Point> left;
+    std::vector<Point> right;
+    bool closed = true;
+    /// The driven path of a run without annotated boundaries, which are then empty.
+    std::vector<Point> driven = {};
+};
+
+using TrackBoundariesByName = std::map<std::string, TrackBoundaries>;
 
 /// Position of a cone on the map of one moment.
 struct MapPlace {
@@ -38,6 +51,11 @@ struct Track {
 };
 
 /// The annotated boundaries as polylines.
-[[nodiscard]] TrackBoundaries boundaries(const Track& track);
+[[nodiscard]] inline TrackBoundaries boundaries(const Track& track) {
+    TrackBoundaries lines{.left = {}, .right = {}, .closed = track.closed, .driven = track.driven};
+    for (const std::size_t index : track.left) lines.left.push_back(track.cones[index].position);
+    for (const std::size_t index : track.right) lines.right.push_back(track.cones[index].position);
+    return lines;
+}
 
 }  // namespace conelane

@@ -1,5 +1,19 @@
 #include "evaluation/world/track_layouts.hpp"
 
+#include "conelane/invalid_input.hpp"
+#include "evaluation/seeded_random.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+
 namespace conelane {
 
 std::span<const TrackLayout> track_layouts() {
@@ -125,6 +139,134 @@ std::span<const TrackLayout> track_layouts() {
          30},
     };
     return layouts;
+}
+
+namespace {
+
+class Draw {
+  public:
+    Draw(std::string_view name, std::uint64_t seed)
+        : random_(generator_of(std::string(name) + " layout", seed)) {}
+
+    double uniform(double low, double high) {
+        // Rounded, so that the last bit of a drawn number has no influence.
+        const double drawn = boost::random::uniform_real_distribution<double>(low, high)(random_);
+        return std::round(drawn * 1e3) / 1e3;
+    }
+    int integer(int low, int high) {
+        return boost::random::uniform_int_distribution<int>(low, high)(random_);
+    }
+
+  private:
+    boost::random::mt19937_64 random_;
+};
+
+/// Corners of an even number of parallel legs, `pitch_m` from centre to centre. A straight along their left
+/// ends closes them.
+std::vector<Corner> legs(int count, double length_m, double pitch_m, Draw& draw) {
+    const double hairpin_m = 0.49 * pitch_m;
+    const double ends_m = std::min(5.0, hairpin_m + 1.0);
+    std::vector<Corner> corners{{{0.0, 0.0}, ends_m}};
+    for (int leg = 0; leg < count; ++leg) {
+        // Alternates between right and left, one leg at a time.
+        const bool right = leg % 2 == 0;
+        if (leg + 1 == count) {
+            corners.push_back({{0.0, leg * pitch_m}, ends_m});
+            break;
+        }
+        const double x_m =
+            right ? length_m + draw.uniform(-3.0, 3.0) : 1.2 * pitch_m + draw.uniform(0.0, 3.0);
+        corners.push_back({{x_m, leg * pitch_m}, hairpin_m});
+        corners.push_back({{x_m, (leg + 1) * pitch_m}, hairpin_m});
+    }
+    return corners;
+}
+
+/// The corners of a star-shaped polygon, each rounded off as far as its sides allow; nothing if that is
+/// less than `least_radius_m`.
+std::optional<std::vector<Corner>> loop(int count, double radius_m, double least_radius_m, Draw& draw) {
+    constexpr double kMaxRadius_m = 16.0;
+    std::vector<Point> vertices;
+    for (int k = 0; k < count; ++k) {
+        const double angle_rad = 2.0 * std::numbers::pi * (k + draw.uniform(-0.2, 0.2)) / count;
+        const double out_m = radius_m * draw.uniform(0.5, 1.5);
+        vertices.emplace_back(std::round(10.0 * out_m * std::cos(angle_rad)) / 10.0,
+                              std::round(10.0 * out_m * std::sin(angle_rad)) / 10.0);
+    }
+    std::vector<Corner> corners;
+    const std::size_t n = vertices.size();
+    for (std::size_t k = 0; k < n; ++k) {
+        const Point before = vertices[k] - vertices[(k + n - 1) % n];
+        const Point after = vertices[(k + 1) % n] - vertices[k];
+        const double half_turn_rad = std::abs(turning_angle(before, after)) / 2.0;
+        const double room_m = 0.48 * std::min(before.norm(), after.norm());
+        const double fitting_m = room_m / std::max(std::tan(half_turn_rad), 1e-3);
+        if (fitting_m < least_radius_m) return std::nullopt;
+        corners.push_back({vertices[k], std::floor(10.0 * std::min(fitting_m, kMaxRadius_m)) / 10.0});
+    }
+    return corners;
+}
+
+std::vector<Corner> drawn_loop(int fewest, int most, double least_radius_m, Draw& draw) {
+    while (true) {
+        const int count = draw.integer(fewest, most);
+        if (auto corners = loop(count, draw.uniform(28.0, 38.0), least_radius_m, draw)) return *corners;
+    }
+}
+
+}  // namespace
+
+std::span<const std::string_view> drawn_layout_names() {
+    static constexpr std::array<std::string_view, 4> kNames{"legs", "tight_hairpins", "gates", "wide"};
+    return kNames;
+}
+
+TrackLayout draw_layout(std::string_view name, std::uint64_t seed) {
+    Draw draw(name, seed);
+    TrackLayout layout{
+        .name = std::string(name), .closed = true, .centre_line = {}, .stray_cones = 0, .style = {}};
+    TrackStyle& style = layout.style;
+    if (name == "legs") {
+        style.mean_width_m = draw.uniform(3.2, 4.4);
+        style.slow_swell_m = 0.2;
+        style.quick_swell_m = 0.1;
+        style.widest_spacing_m = draw.uniform(2.2, 3.6);
+        style.spacing_per_curvature_m = 1.5;
+        const double apart_m = draw.uniform(3.6, 6.0);
+        const int count = draw.integer(0, 1) == 0 ? 4 : 6;
+        const double length_m = draw.uniform(30.0, 40.0);
+        layout.centre_line = legs(count, length_m, style.mean_width_m + apart_m, draw);
+    } else if (name == "tight_hairpins") {
+        style.mean_width_m = draw.uniform(2.9, 3.1);
+        style.slow_swell_m = 0.05;
+        style.quick_swell_m = 0.05;
+        style.widest_spacing_m = draw.uniform(1.6, 2.0);
+        style.spacing_per_curvature_m = 0.5;
+        style.lateral_jitter_m = 0.04;
+        const double apart_m = draw.uniform(2.9, 3.4);
+        const int count = draw.integer(0, 1) == 0 ? 6 : 8;
+        const double length_m = draw.uniform(20.0, 26.0);
+        layout.centre_line = legs(count, length_m, style.mean_width_m + apart_m, draw);
+    } else if (name == "gates") {
+        style.mean_width_m = draw.uniform(3.3, 4.0);
+        style.slow_swell_m = 0.3;
+        style.widest_spacing_m = draw.uniform(3.0, 4.2);
+        style.gates = 2;
+        layout.stray_cones = static_cast<std::size_t>(draw.integer(4, 12));
+        layout.centre_line = drawn_loop(8, 10, 6.5, draw);
+    } else {
+        style.mean_width_m = draw.uniform(5.2, 5.5);
+        style.slow_swell_m = 0.3;
+        style.quick_swell_m = 0.1;
+        style.widest_spacing_m = draw.uniform(4.8, 5.4);
+        style.spacing_per_curvature_m = 3.0;
+        layout.stray_cones = static_cast<std::size_t>(draw.integer(4, 12));
+        layout.centre_line = drawn_loop(7, 9, 8.0, draw);
+    }
+    if (draw.integer(0, 1) == 1) {
+        for (Corner& corner : layout.centre_line) corner.at.y() = -corner.at.y();  // driven clockwise
+    }
+    return layout;
 }
 
 }  // namespace conelane

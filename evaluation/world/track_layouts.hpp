@@ -3,8 +3,10 @@
 #include "evaluation/world/rounded_path.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace conelane {
@@ -33,5 +35,16 @@ struct TrackLayout {
 /// All layouts: the three topologies of the RLD paper (straight, circle, curvy), then closed circuits within
 /// the limits of the Formula Student rules, of 200 to 500 m.
 [[nodiscard]] std::span<const TrackLayout> track_layouts();
+
+/// Names of the layouts that each seed draws, with properties of recorded courses that the fixed layouts do
+/// not have:
+/// - `legs`: four parallel legs or six, their boundaries 3 to 6 m apart;
+/// - `tight_hairpins`: the same with a lane of 2.8 to 3.2 m, cones every 1.5 to 2 m, radii of about 3 m;
+/// - `gates`: a loop with two gates of big orange cones, each in a gap of the boundaries of 10 to 12 m;
+/// - `wide`: a loop of 4.8 to 6 m with cones up to 6 m apart.
+[[nodiscard]] std::span<const std::string_view> drawn_layout_names();
+
+/// Precondition: the name is one of drawn_layout_names.
+[[nodiscard]] TrackLayout draw_layout(std::string_view name, std::uint64_t seed);
 
 }  // namespace conelane

@@ -5,9 +5,13 @@
 #include "evaluation/world/scene_generation.hpp"
 
 #include <cstdlib>
+#include <exception>
+#include <iostream>
 #include <iterator>
 #include <string>
 #include <utility>
+
+#include <benchmark/benchmark.h>
 
 namespace conelane::experiments {
 
@@ -32,6 +36,22 @@ std::vector<Scene> scenes_of_size(const std::vector<AnnotatedScene>& all, std::s
         if (scene.cones.size() == size) scenes.push_back(std::move(scene));
     }
     return scenes;
+}
+
+int run_benchmarks(int argument_count, char** arguments, double false_positive_rate,
+                   const std::function<void(const SharedScenes&)>& register_all) {
+    benchmark::Initialize(&argument_count, arguments);
+    if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
+    try {
+        register_all(
+            std::make_shared<const std::vector<AnnotatedScene>>(benchmark_scenes(false_positive_rate)));
+    } catch (const std::exception& failure) {
+        std::cerr << arguments[0] << ": " << failure.what() << '\n';
+        return 2;
+    }
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    return 0;
 }
 
 }  // namespace conelane::experiments

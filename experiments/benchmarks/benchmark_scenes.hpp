@@ -3,6 +3,8 @@
 #include "evaluation/world/annotated_scene.hpp"
 
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <vector>
 
 namespace conelane::experiments {
@@ -13,5 +15,11 @@ namespace conelane::experiments {
 
 /// The scenes with at least this many cones ahead, with only the nearest of them.
 [[nodiscard]] std::vector<Scene> scenes_of_size(const std::vector<AnnotatedScene>& all, std::size_t size);
+
+using SharedScenes = std::shared_ptr<const std::vector<AnnotatedScene>>;
+
+/// Registers benchmarks on benchmark_scenes and runs all. Returns the program's exit code.
+[[nodiscard]] int run_benchmarks(int argument_count, char** arguments, double false_positive_rate,
+                                 const std::function<void(const SharedScenes&)>& register_all);
 
 }  // namespace conelane::experiments

@@ -1,9 +1,8 @@
 // Times of the stages of CLC from scene to lane: the search graph, the enumeration with and without features
-// (per iteration), the ranking (per candidate), and a whole detection. Scenes are of generated tracks, 30 %
-// false positives, 30 m range; the scenes take turns.
+// (per iteration), the ranking (per candidate), and a whole detection. The scenes of benchmark_scenes take
+// turns.
 
-#include "evaluation/world/generated_tracks.hpp"
-#include "evaluation/world/scene_generation.hpp"
+#include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
 #include "graph_search/clc/candidate_search.hpp"
 #include "graph_search/clc/clc_detector.hpp"
@@ -12,7 +11,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,16 +21,8 @@ namespace {
 
 const std::vector<Scene>& scenes() {
     static const std::vector<Scene> all = [] {
-        SceneOptions options;
-        options.false_positive_rates = {0.3};
-        options.ranges_m = {30.0};
-        options.every_m = 15.0;
         std::vector<Scene> result;
-        for (const std::string& name : generated_track_names()) {
-            for (AnnotatedScene& scene : generate_scenes(generate_track(name, 0), options)) {
-                result.push_back(std::move(scene.scene));
-            }
-        }
+        for (AnnotatedScene& scene : benchmark_scenes(0.3)) result.push_back(std::move(scene.scene));
         return result;
     }();
     return all;

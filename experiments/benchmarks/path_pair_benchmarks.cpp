@@ -1,4 +1,4 @@
-// The benefit of each stage of path-pair, and whether its memory stays constant.
+// The benefit of each stage of path-pair.
 //
 //   ablation/STAGE/N   solves with one stage switched off, on cone sets of N (0: all visible), at most 50 ms
 //                      each; counters: share proven in time, nodes a scene
@@ -8,7 +8,6 @@
 //
 //   verification/N     the check that every answer passes, on the best lane graph found in 50 ms; counter:
 //                      mean time a scene
-//   memory             100 000 solves by one instance; counters: resident memory after 1000 and at the end
 //
 // Scenes are of generated tracks with 30 % false positives, or those of the file that the environment
 // variable CONELANE_SCENES names.
@@ -23,23 +22,17 @@
 
 #include <array>
 #include <cstdint>
-#include <fstream>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {
 
 constexpr double kTimeLimit_ms = 50.0;
-constexpr std::size_t kMemorySize = 30;
-constexpr std::size_t kMemorySolves = 100000;
-constexpr std::size_t kWarmSolves = 1000;
 constexpr std::int64_t kPasses = 9;
 
 struct Ablation {
@@ -58,7 +51,6 @@ std::vector<Ablation> ablations() {
     return all;
 }
 
-using Scenes = std::shared_ptr<const std::vector<AnnotatedScene>>;
 using Problems = std::vector<LaneGraphProblem>;
 
 Problems problems_of(const std::vector<AnnotatedScene>& scenes, std::size_t size) {
@@ -68,15 +60,6 @@ Problems problems_of(const std::vector<AnnotatedScene>& scenes, std::size_t size
             make_problem(size == 0 ? annotated.scene : nearest_ahead(annotated.scene, size), {}));
     }
     return problems;
-}
-
-/// Resident memory of this process [kB].
-double resident_kB() {
-    std::ifstream statistics("/proc/self/statm");
-    double total_pages = 0.0;
-    double resident_pages = 0.0;
-    statistics >> total_pages >> resident_pages;
-    return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1024.0;
 }
 
 /// An iteration is one pass over all problems.
@@ -141,20 +124,7 @@ void run_verification(benchmark::State& state, const Problems& problems) {
         static_cast<double>(verified), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void run_memory(benchmark::State& state, const Problems& problems) {
-    for (auto iteration : state) {
-        static_cast<void>(iteration);
-        const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
-        for (std::size_t solve = 0; solve < kMemorySolves; ++solve) {
-            benchmark::DoNotOptimize(
-                solver->solve(problems[solve % problems.size()], {.limits = {kTimeLimit_ms}}));
-            if (solve + 1 == kWarmSolves) state.counters["kB_after_1000"] = resident_kB();
-        }
-        state.counters["kB_at_end"] = resident_kB();
-    }
-}
-
-void register_all(const Scenes& all) {
+void register_all(const SharedScenes& all) {
     for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 0}) {
         for (const Ablation& ablation : ablations()) {
             const std::string name = std::string("ablation/") + ablation.name + "/" + std::to_string(size);
@@ -180,27 +150,12 @@ void register_all(const Scenes& all) {
             ->Unit(benchmark::kMillisecond)
             ->UseRealTime();
     }
-    benchmark::RegisterBenchmark(
-        "memory", [=](benchmark::State& state) { run_memory(state, problems_of(*all, kMemorySize)); })
-        ->Unit(benchmark::kSecond)
-        ->Iterations(1)
-        ->UseRealTime();
 }
 
 }  // namespace
 }  // namespace conelane::experiments
 
 int main(int argument_count, char** arguments) {
-    benchmark::Initialize(&argument_count, arguments);
-    if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
-    try {
-        namespace experiments = conelane::experiments;
-        experiments::register_all(std::make_shared<const std::vector<conelane::AnnotatedScene>>(
-            experiments::benchmark_scenes(0.3)));
-    } catch (const std::exception& failure) {
-        std::cerr << "path_pair_benchmarks: " << failure.what() << '\n';
-        return 2;
-    }
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    return conelane::experiments::run_benchmarks(argument_count, arguments, 0.3,
+                                                 conelane::experiments::register_all);
 }

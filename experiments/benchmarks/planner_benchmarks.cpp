@@ -4,12 +4,12 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/planner.hpp"
+#include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/course.hpp"
 #include "experiments/race/race.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <ctime>
 #include <limits>
@@ -65,16 +65,6 @@ double time_ms(Call&& call) {
     return 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-void count(benchmark::State& state, std::vector<double> times_ms) {
-    std::ranges::sort(times_ms);
-    const auto quantile = [&](std::size_t percent) {
-        return times_ms[(times_ms.size() - 1) * percent / 100];
-    };
-    state.counters["frames"] = static_cast<double>(times_ms.size());
-    state.counters["median_ms"] = quantile(50);
-    state.counters["p99_ms"] = quantile(99);
-}
-
 /// One iteration is all frames once. `with_planner`, `with_detector`: whose time counts; with both, the
 /// planner's time minus the detector's.
 void frames(benchmark::State& state, bool with_planner, bool with_detector) {
@@ -104,7 +94,9 @@ void frames(benchmark::State& state, bool with_planner, bool with_detector) {
             }
         }
     }
-    count(state, std::move(times_ms));
+    state.counters["frames"] = static_cast<double>(times_ms.size());
+    state.counters["median_ms"] = median(times_ms);
+    state.counters["p99_ms"] = quantile(times_ms, 0.99);
 }
 BENCHMARK_CAPTURE(frames, planner, true, false)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(frames, detector_alone, false, true)->Iterations(1)->Unit(benchmark::kMillisecond);

@@ -1,16 +1,13 @@
-// Times of the stages from scene to lane graph by cone-set size: making the problem, building the program,
-// updating it, and a whole solve by each backend. Scenes are of generated tracks with 20 % false positives,
-// or those of the file that the environment variable CONELANE_SCENES names. One iteration is one scene; the
-// scenes take turns.
+// Times of the stages from scene to program by cone-set size: making the problem, building the program, and
+// updating it; `conelane study backends` has whole solves. Scenes are of generated tracks with 20 % false
+// positives, or those of the file that the environment variable CONELANE_SCENES names. One iteration is one
+// scene; the scenes take turns.
 
 #include "evaluation/world/annotated_scene.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/registry.hpp"
 
 #include <array>
-#include <iostream>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,8 +18,6 @@ namespace conelane::experiments {
 namespace {
 
 constexpr std::array<std::int64_t, 6> kSizes{6, 9, 12, 16, 20, 30};
-/// Larger programs of the paper formulation take seconds.
-constexpr std::int64_t kMaxPaperSize = 12;
 
 std::vector<LaneGraphProblem> problems_of(const std::vector<Scene>& scenes, EdgeExtent extent) {
     std::vector<LaneGraphProblem> problems;
@@ -45,9 +40,7 @@ void take_turns(benchmark::State& state, std::size_t count, const Step& step) {
     }
 }
 
-using Scenes = std::shared_ptr<const std::vector<AnnotatedScene>>;
-
-void register_stages(const Scenes& all, Formulation formulation, std::int64_t size) {
+void register_stages(const SharedScenes& all, Formulation formulation, std::int64_t size) {
     const std::string ending = "/" + std::string(to_string(formulation)) + "/" + std::to_string(size);
     const EdgeExtent extent = parts(formulation).extent;
     const auto cones = static_cast<std::size_t>(size);
@@ -74,33 +67,9 @@ void register_stages(const Scenes& all, Formulation formulation, std::int64_t si
     });
 }
 
-void register_solve(const Scenes& all, const RldSolverEntry& entry, Formulation formulation,
-                    std::int64_t size) {
-    std::string name = "solve/" + std::string(entry.name);
-    if (entry.has(SolverTrait::uses_formulation)) name += "/" + std::string(to_string(formulation));
-    const auto cones = static_cast<std::size_t>(size);
-    benchmark::RegisterBenchmark((name + "/" + std::to_string(size)).c_str(), [=, &entry](
-                                                                                  benchmark::State& state) {
-        const std::vector<Scene> scenes = scenes_of_size(*all, cones);
-        const auto solver = entry.make(formulation);
-        take_turns(state, scenes.size(), [&](std::size_t i) {
-            const auto problem = make_problem(scenes[i], {}, solver->extent());
-            const RldReport report = solver->solve(problem, {});
-            if (report.status == SolveStatus::error) state.SkipWithError(report.message.c_str());
-        });
-    })->UseRealTime();
-}
-
-void register_all(const Scenes& all) {
+void register_all(const SharedScenes& all) {
     for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
         for (const std::int64_t size : kSizes) register_stages(all, formulation, size);
-    }
-    for (const RldSolverEntry& entry : rld_solvers()) {
-        for (const std::int64_t size : kSizes) {
-            register_solve(all, entry, Formulation::tight, size);
-            if (entry.has(SolverTrait::uses_formulation) && size <= kMaxPaperSize)
-                register_solve(all, entry, Formulation::paper, size);
-        }
     }
 }
 
@@ -108,16 +77,6 @@ void register_all(const Scenes& all) {
 }  // namespace conelane::experiments
 
 int main(int argument_count, char** arguments) {
-    benchmark::Initialize(&argument_count, arguments);
-    if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
-    try {
-        namespace experiments = conelane::experiments;
-        experiments::register_all(std::make_shared<const std::vector<conelane::AnnotatedScene>>(
-            experiments::benchmark_scenes(0.2)));
-    } catch (const std::exception& failure) {
-        std::cerr << "conelane_benchmarks: " << failure.what() << '\n';
-        return 2;
-    }
-    benchmark::RunSpecifiedBenchmarks();
-    benchmark::Shutdown();
+    return conelane::experiments::run_benchmarks(argument_count, arguments, 0.2,
+                                                 conelane::experiments::register_all);
 }

@@ -2,10 +2,10 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/left_out_scenes.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/outside/finished_lanes.hpp"
+#include "evaluation/outside/point_snapping.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"

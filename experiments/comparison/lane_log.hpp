@@ -1,7 +1,7 @@
 #pragma once
 
+#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/output_stream.hpp"
 
 #include <cstddef>
 #include <filesystem>

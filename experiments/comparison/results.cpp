@@ -1,9 +1,9 @@
 #include "experiments/comparison/results.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/json_fields.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/outside/detector_card_fields.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/progress/progress.hpp"
 
@@ -259,7 +259,7 @@ void write_results(std::ostream& output, std::span<const ScoredMethod> methods, 
                 const std::vector<double> own_ms = self_times_ms(scored.scores, &row.key);
                 if (!own_ms.empty()) line["self_timed_ms"] = median_and_p95(own_ms);
                 if (!method.exec.empty() && !echo.empty()) line["echo_floor_ms"] = median_and_p95(echo);
-                if (method.card) line["card"] = JsonFieldWriter::written(*method.card);
+                if (method.card) line["card"] = value_json(*method.card, "card");
             }
             line["commit"] = origin.commit;
             line["compiler"] = origin.compiler;

@@ -1,11 +1,12 @@
 #include "experiments/comparison/run_record.hpp"
 
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/file_hash.hpp"
-#include "evaluation/formats/json_fields.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/parameter_tag.hpp"
-#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/formats/scene_options_fields.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/outside/detector_card_fields.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 
 #include <algorithm>
@@ -18,59 +19,93 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace conelane::experiments {
+namespace conelane {
 
-// Found by argument-dependent look-up, which does not see an unnamed namespace.
-template <typename Record, typename Wanted>
-concept RecordOf = std::same_as<std::remove_const_t<Record>, Wanted>;
+using experiments::MethodRecord;
+using experiments::RunRecord;
 
-template <RecordOf<MethodRecord::Rld> Rld, typename Fields>
-void fields_of(Rld& rld, Fields& fields) {
-    auto& parameters = rld.parameters;
-    for (const RldParameterField& field : rld_parameter_fields()) fields(field.key, parameters.*field.value);
-    fields("pairing", parameters.pairing);
-    for (const RldParameterField& field : rld_extra_fields()) fields(field.key, parameters.*field.value);
-    fields("use_confidence", parameters.use_confidence);
-    fields("forbid_crossing", parameters.forbid_crossing);
-    fields.maybe("learned_costs", rld.learned_costs);
-}
+template <>
+struct Choices<Formulation> {
+    static constexpr std::array all{Formulation::tight, Formulation::paper};
+};
+template <>
+inline constexpr std::tuple kFields<Provenance>{Field{"commit", &Provenance::commit},
+                                                Field{"compiler", &Provenance::compiler},
+                                                Field{"machine", &Provenance::machine}};
 
-template <RecordOf<MethodRecord> Method, typename Fields>
-void fields_of(Method& method, Fields& fields) {
-    fields("name", method.name);
-    fields.maybe("exec", method.exec);
-    fields.maybe("lanes", method.lanes);
-    fields.maybe("solver", method.solver);
-    fields.maybe("formulation", method.formulation);
-    fields.maybe("card", method.card);
-    fields.maybe("hash", method.hash);
-    fields.maybe("nearest", method.nearest);
-    fields.maybe("rld_parameters", method.rld_parameters);
-}
-
-template <RecordOf<RunRecord> Run, typename Fields>
-void fields_of(Run& run, Fields& fields) {
-    fields("commit", run.origin.commit);
-    fields("compiler", run.origin.compiler);
-    fields("machine", run.origin.machine);
-    fields("tracks", run.tracks);
-    fields("methods", run.methods);
-    scene_fields(run.scenes, fields);
-    fields("threads", run.threads);
-    fields("candidates", run.candidates);
-    JsonText folds{run.cross_validation};
-    fields.maybe("cross_validation", folds);
-    fields.maybe("program", run.program);
-    fields.maybe("time_limit_ms", run.time_limit_ms);
-    std::vector<std::size_t> shard;
-    if (run.shard.count > 1) shard = {run.shard.index, run.shard.count};
-    fields.maybe("shard", shard);
-    if constexpr (!std::is_const_v<Run>) {
-        run.cross_validation = folds.text;
-        if (shard.size() == 2) run.shard = {shard[0], shard[1]};
+/// All parameters, by the names that files of parameters have.
+struct EveryParameter {
+    static void read(const JsonNode& json, MethodRecord::Rld& rld) {
+        for_each(rld.parameters, [&](const char* key, auto& value) { read_value(json.member(key), value); });
     }
-}
+    static void put(nlohmann::ordered_json& json, const MethodRecord::Rld& rld, const std::string& place) {
+        for_each(rld.parameters,
+                 [&](const char* key, const auto& value) { json[key] = value_json(value, place + key); });
+    }
 
+  private:
+    static void for_each(auto& parameters, const auto& use) {
+        for (const RldParameterField& field : rld_parameter_fields()) use(field.key, parameters.*field.value);
+        use("pairing", parameters.pairing);
+        for (const RldParameterField& field : rld_extra_fields()) use(field.key, parameters.*field.value);
+        use("use_confidence", parameters.use_confidence);
+        use("forbid_crossing", parameters.forbid_crossing);
+    }
+};
+template <>
+inline constexpr std::tuple kFields<MethodRecord::Rld>{
+    EveryParameter{}, Field{"learned_costs", &MethodRecord::Rld::learned_costs, Absent::if_empty}};
+
+template <>
+inline constexpr std::tuple kFields<MethodRecord>{Field{"name", &MethodRecord::name},
+                                                  Field{"exec", &MethodRecord::exec, Absent::if_empty},
+                                                  Field{"lanes", &MethodRecord::lanes, Absent::if_empty},
+                                                  Field{"solver", &MethodRecord::solver, Absent::if_empty},
+                                                  Field{"formulation", &MethodRecord::formulation},
+                                                  Field{"card", &MethodRecord::card},
+                                                  Field{"hash", &MethodRecord::hash, Absent::if_empty},
+                                                  Field{"nearest", &MethodRecord::nearest},
+                                                  Field{"rld_parameters", &MethodRecord::rld_parameters}};
+
+/// `cross_validation`: any object, passed on as text. The reader of a file sets it, since a JsonNode has no
+/// text.
+struct Folds {
+    static void read(const JsonNode& json, RunRecord& /*run*/) {
+        if (const auto folds = json.find("cross_validation")) folds->require_object();
+    }
+    static void put(nlohmann::ordered_json& json, const RunRecord& run, const std::string& /*place*/) {
+        if (!run.cross_validation.empty())
+            json["cross_validation"] = nlohmann::ordered_json::parse(run.cross_validation);
+    }
+};
+
+/// `shard`: [index, count], absent for the whole run.
+struct ShardPair {
+    static void read(const JsonNode& json, RunRecord& run) {
+        std::pair<std::size_t, std::size_t> shard{run.shard.index, run.shard.count};
+        if (const auto found = json.find("shard")) read_value(*found, shard);
+        run.shard = {shard.first, shard.second};
+    }
+    static void put(nlohmann::ordered_json& json, const RunRecord& run, const std::string& /*place*/) {
+        if (run.shard.count > 1) json["shard"] = {run.shard.index, run.shard.count};
+    }
+};
+
+template <>
+inline constexpr std::tuple kFields<RunRecord>{Inlined{&RunRecord::origin},
+                                               Field{"tracks", &RunRecord::tracks},
+                                               Field{"methods", &RunRecord::methods},
+                                               Inlined{&RunRecord::scenes},
+                                               Field{"threads", &RunRecord::threads},
+                                               Field{"candidates", &RunRecord::candidates},
+                                               Folds{},
+                                               Field{"program", &RunRecord::program, Absent::if_empty},
+                                               Field{"time_limit_ms", &RunRecord::time_limit_ms},
+                                               ShardPair{}};
+
+}  // namespace conelane
+
+namespace conelane::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,7 +113,7 @@ namespace fs = std::filesystem;
 constexpr const char* kRunFile = "run.json";
 
 nlohmann::ordered_json json_of(const RunRecord& record) {
-    return JsonFieldWriter::written(record);
+    return value_json(record, "run");
 }
 
 std::set<std::string> courses_of(const MethodRecord& method, bool is_cross_validated) {
@@ -193,7 +228,7 @@ RunRecord read_run_record(const fs::path& directory) {
     std::string line;
     if (!std::getline(stream, line)) throw InputError(file, 0, "", "cannot be read");
     RunRecord record;
-    with_json_line(line, file, 1, [&](const JsonNode& json) { JsonFieldReader::read(json, record); });
+    with_json_line(line, file, 1, [&](const JsonNode& json) { read_value(json, record); });
     if (const auto json = nlohmann::json::parse(line); json.contains("cross_validation"))
         record.cross_validation = json["cross_validation"].dump();
     for (MethodRecord& method : record.methods)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/outside/outside_detector.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/formats/left_out_scenes.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/comparison/results.hpp"
 
 #include <cstddef>

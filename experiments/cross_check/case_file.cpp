@@ -1,11 +1,10 @@
-#include "experiments/cross_check/case_file.hpp"
-
 #include "conelane/lane_graph_problem.hpp"
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/program_files.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "experiments/cross_check/drawn_case.hpp"
 #include "model/lane_graph_model.hpp"
 
 #include <array>

@@ -1,14 +1,11 @@
 #include "experiments/cross_check/cross_check.hpp"
 
-#include "evaluation/formats/file_hash.hpp"
-#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/output_stream.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/cross_check/case_file.hpp"
-#include "experiments/cross_check/shrink.hpp"
 #include "experiments/progress/progress.hpp"
 #include "model/deadline.hpp"
 

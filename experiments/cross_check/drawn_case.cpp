@@ -61,7 +61,8 @@ std::size_t cone_count(Draw& draw) {
 void make_lane(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     Scene& scene = drawn.scene;
     scene.pose.yaw_rad = draw.integer(-3141, 3141) / 1000.0;
-    scene.pose.position = {draw.integer(-50, 50), draw.integer(-50, 50)};
+    scene.pose.position = {static_cast<double>(draw.integer(-50, 50)),
+                           static_cast<double>(draw.integer(-50, 50))};
     const Point ahead = scene.pose.heading();
     const Point left(-ahead.y(), ahead.x());
     const double curvature = draw.real(-0.08, 0.08);
@@ -240,8 +241,8 @@ void draw_learned_costs(RldParameters& parameters, Draw& draw) {
         if (draw.chance(0.5)) parameters.d_clear = rounded(draw.real(0.1, 1.0));
     }
     if (draw.chance(0.3)) parameters.d_side = rounded(draw.real(1.0, 6.0));
-    if (draw.chance(0.5)) parameters.k_edge = draw.integer(2, 8);
-    if (draw.chance(0.5)) parameters.k_gap = draw.integer(2, 16);
+    if (draw.chance(0.5)) parameters.nearest_of_edge = draw.integer(2, 8);
+    if (draw.chance(0.5)) parameters.nearest_of_gap = draw.integer(2, 16);
     LearnedCosts costs = LearnedCosts::zero(draw.chance(0.5) ? kUnits : 0);
     for (LearnedNetwork& network : costs.networks) {
         for (std::vector<double>* list : {&network.linear, &network.hidden, &network.output}) {

@@ -7,6 +7,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,5 +45,28 @@ struct CrossCheckCase {
 /// range.
 [[nodiscard]] CrossCheckCase draw_cross_check_case(std::span<const AnnotatedScene> given, std::uint64_t seed,
                                                    std::size_t number);
+
+/// The case with as many cones removed, and as many parameters at their defaults, as `differs` allows: it
+/// holds for the result, and not after any further cone is removed. It is called at most `max_trials` times.
+/// Precondition: it holds for `drawn`.
+[[nodiscard]] CrossCheckCase shrink(CrossCheckCase drawn,
+                                    const std::function<bool(const CrossCheckCase&)>& differs,
+                                    std::size_t max_trials = 2000);
+
+/// A stored case, to be judged again.
+struct StoredCase {
+    CrossCheckCase drawn;
+    std::vector<std::string> solvers;
+    double time_limit_ms = 0.0;  ///< the generous limit
+};
+
+/// Writes NAME.scenes.jsonl, NAME.params.json and, if the scene has an edge, NAME.mps, the program in the
+/// case's formulation; finally NAME.case.json, which names them and holds the rest and the findings. NAME is
+/// the scene's id. Returns its path. Each file appears complete or not at all. Throws InputError.
+std::filesystem::path write_case(const std::filesystem::path& directory, const StoredCase& stored,
+                                 std::span<const std::string> findings);
+
+/// Reads a NAME.case.json and the files beside it. Throws InputError naming file, line and key.
+[[nodiscard]] StoredCase read_case(const std::filesystem::path& file);
 
 }  // namespace conelane::experiments

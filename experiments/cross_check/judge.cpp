@@ -9,6 +9,7 @@
 #include "solvers/registry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -92,7 +93,7 @@ class Judgement {
         for (const CheckedSolver& solver : solvers_) {
             if (solver.max_cones && drawn_.scene.cones.size() > *solver.max_cones) continue;
             answers_.push_back({fmt::format("{} within {} ms", solver.name, limit_ms), asked,
-                                solver.solve(drawn_.scene, drawn_.parameters, limit_ms)});
+                                solver.solve(drawn_.scene, drawn_.parameters, {.limits = {limit_ms}})});
         }
     }
 
@@ -104,7 +105,7 @@ class Judgement {
         if (first.max_cones && drawn_.scene.cones.size() > *first.max_cones) return std::nullopt;
         Scene previous = drawn_.scene;
         previous.pose.position -= kTravelOfAFrame_m * previous.pose.heading();
-        return first.solve(previous, drawn_.parameters, time_limit_ms_).lane_graph;
+        return first.solve(previous, drawn_.parameters, {.limits = {time_limit_ms_}}).lane_graph;
     }
 
     /// The starts for the solver of this name.
@@ -137,7 +138,7 @@ class Judgement {
         const LaneGraphProblem problem = make_problem(drawn_.scene, drawn_.parameters);
         const std::optional<LaneGraph> previous = answer_of_previous_frame();
         for (const CheckedSolver& solver : solvers_) {
-            if (!solver.solve_from) continue;
+            if (!solver.takes_starts) continue;
             if (solver.max_cones && drawn_.scene.cones.size() > *solver.max_cones) continue;
             for (const NamedStart& start : starts(solver.name, previous)) {
                 const bool is_feasible_start = is_feasible(problem, start.graph);
@@ -146,7 +147,8 @@ class Judgement {
                 for (const double limit_ms : limits) {
                     Answer answer{fmt::format("{} within {} ms from {}", solver.name, limit_ms, start.name),
                                   Asked::from_a_start,
-                                  solver.solve_from(drawn_.scene, drawn_.parameters, limit_ms, start.graph)};
+                                  solver.solve(drawn_.scene, drawn_.parameters,
+                                               {.limits = {limit_ms}, .start = &start.graph})};
                     if (is_feasible_start) hold_against_start(answer, objective(problem, start.graph));
                     answers_.push_back(std::move(answer));
                 }
@@ -259,31 +261,17 @@ std::vector<CheckedSolver> make_checked_solvers(std::span<const std::string> nam
         solvers.push_back(
             {entry->has(SolverTrait::uses_formulation) ? fmt::format("{} ({})", name, to_string(formulation))
                                                        : name,
-             [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms) {
-                 return solve_scene(*solver, scene, parameters, {.limits = {time_limit_ms}}).report;
+             [solver](const Scene& scene, const RldParameters& parameters, const SolveArguments& arguments) {
+                 return solve_scene(*solver, scene, parameters, arguments).report;
              },
-             entry->max_cones,
-             [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms,
-                      const LaneGraph& start) {
-                 return solve_scene(*solver, scene, parameters, {.limits = {time_limit_ms}, .start = &start})
-                     .report;
-             }});
+             entry->max_cones, true});
     }
     return solvers;
 }
 
 std::string_view to_string(CrossCheckOutcome outcome) {
-    switch (outcome) {
-        case CrossCheckOutcome::same_optimum:
-            return "same optimum";
-        case CrossCheckOutcome::infeasible:
-            return "infeasible";
-        case CrossCheckOutcome::undecided:
-            return "undecided";
-        case CrossCheckOutcome::differ:
-            break;
-    }
-    return "differ";
+    constexpr std::array<std::string_view, 4> kNames{"same optimum", "infeasible", "undecided", "differ"};
+    return kNames.at(static_cast<std::size_t>(outcome));
 }
 
 CrossCheckVerdict judge(const CrossCheckCase& drawn, std::span<const CheckedSolver> solvers,

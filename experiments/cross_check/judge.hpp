@@ -16,11 +16,9 @@ namespace conelane::experiments {
 /// A solver that claims to be exact, used for one case after another.
 struct CheckedSolver {
     std::string name;
-    std::function<RldReport(const Scene&, const RldParameters&, double time_limit_ms)> solve;
-    std::optional<std::size_t> max_cones{};  ///< it does not get larger cone sets
-    /// The same with a start; if empty, it does not get starts.
-    std::function<RldReport(const Scene&, const RldParameters&, double time_limit_ms, const LaneGraph& start)>
-        solve_from = {};
+    std::function<RldReport(const Scene&, const RldParameters&, const SolveArguments&)> solve;
+    std::optional<std::size_t> max_cones = {};  ///< it does not get larger cone sets
+    bool takes_starts = false;
 };
 
 /// The names of the exact solvers of this build.

@@ -1,4 +1,4 @@
-#include "experiments/cross_check/shrink.hpp"
+#include "experiments/cross_check/drawn_case.hpp"
 
 #include <algorithm>
 #include <utility>

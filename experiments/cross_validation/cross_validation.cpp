@@ -1,8 +1,8 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/file_hash.hpp"
-#include "evaluation/formats/scene_options_json.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 
@@ -107,6 +107,22 @@ void check(const CrossValidationOptions& options) {
 }
 
 }  // namespace
+
+std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) {
+    constexpr std::string_view kOfNames = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    std::vector<CourseFamily> families;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        const std::string name = text.substr(0, equals);
+        if (equals == std::string::npos || name.empty() || name.find_first_not_of(kOfNames) != name.npos)
+            throw InvalidInput("--family",
+                               "'" + text + "' is not NAME=SPEC with a name of letters, digits, _ and -");
+        auto family = std::ranges::find(families, name, &CourseFamily::name);
+        if (family == families.end()) family = families.insert(families.end(), {name, {}});
+        family->tracks.push_back(text.substr(equals + 1));
+    }
+    return families;
+}
 
 ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs::path& directory) {
     check(options);

@@ -1,13 +1,22 @@
 #pragma once
 
 #include "experiments/comparison/comparison.hpp"
-#include "experiments/cross_validation/course_family.hpp"
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
 namespace conelane::experiments {
+
+/// Courses of one place or one designer, so similar that a method that has seen one of them knows the others.
+struct CourseFamily {
+    std::string name;                 ///< of its folder
+    std::vector<std::string> tracks;  ///< SPECs of load_tracks
+};
+
+/// The families that a user lists as NAME=SPEC, in the order in which their names first occur; another SPEC
+/// with the same name is added to that family. Throws InvalidInput naming a text of another form.
+[[nodiscard]] std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts);
 
 struct CrossValidationOptions {
     std::vector<CourseFamily> families;  ///< at least two; each is held out once

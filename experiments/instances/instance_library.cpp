@@ -4,12 +4,13 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/folder_lock.hpp"
-#include "evaluation/formats/gzip.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/program_files.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
+#include "experiments/instances/files_together.hpp"
 #include "experiments/instances/instance_features.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -41,12 +42,6 @@ struct SolvedProgram {
     double time_ms = 0.0;
 };
 
-/// The answer of path-pair to a scene.
-struct TimedReport {
-    RldReport report;
-    double time_ms = 0.0;
-};
-
 /// Solves the program and adds the rows that its point violates, until no row is violated or the time ends.
 SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formulation, double time_limit_ms) {
     const Deadline deadline(time_limit_ms);
@@ -72,16 +67,13 @@ SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formul
 }
 
 /// Throws InvalidInput if the answer is an error.
-TimedReport solve_exactly(const Scene& scene, const std::string& name, const RldParameters& parameters,
+SolvedScene solve_exactly(const Scene& scene, const std::string& name, const RldParameters& parameters,
                           double time_limit_ms) {
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
-    const Stopwatch watch;
-    TimedReport timed;
-    timed.report =
-        solve_scene(*path_pair, scene, parameters, {.limits = {.time_limit_ms = time_limit_ms}}).report;
-    timed.time_ms = watch.elapsed_ms();
-    if (timed.report.status == SolveStatus::error) throw InvalidInput(name, timed.report.message);
-    return timed;
+    SolvedScene solved =
+        solve_scene(*path_pair, scene, parameters, {.limits = {.time_limit_ms = time_limit_ms}});
+    if (solved.report.status == SolveStatus::error) throw InvalidInput(name, solved.report.message);
+    return solved;
 }
 
 [[noreturn]] void contradict(const std::string& name, const RldReport& exact, const MilpReport& milp) {
@@ -97,14 +89,14 @@ bool is_proof(SolveStatus status) {
     return status == SolveStatus::optimal || status == SolveStatus::infeasible;
 }
 
-KnownOptimum optimum_by_both(const std::string& name, const TimedReport& timed, const SolvedProgram& solved,
+KnownOptimum optimum_by_both(const std::string& name, const SolvedScene& timed, const SolvedProgram& solved,
                              const LaneGraphProblem& problem, const LaneGraphModel& model) {
     const RldReport& exact = timed.report;
     const MilpReport& milp = solved.report;
     KnownOptimum known;
     known.best = exact.objective;
     known.bound = milp.bound;
-    if (is_proof(exact.status)) known.path_pair_ms = timed.time_ms;
+    if (is_proof(exact.status)) known.path_pair_ms = timed.total_ms;
     if (is_proof(milp.status)) known.milp_ms = solved.time_ms;
     if (!is_proof(exact.status) || !is_proof(milp.status)) return known;
     if (exact.status != milp.status) contradict(name, exact, milp);
@@ -140,24 +132,6 @@ constexpr const char* kList = "conelane.test";
 constexpr const char* kSolutions = "conelane.solu";
 constexpr const char* kIndex = "index.csv";
 constexpr std::string_view kProgramEnding = ".mps.gz";
-
-/// Files that get their names together, once all of them are complete. Until then at most one is open.
-class Files {
-  public:
-    void add(const std::filesystem::path& file, const std::string& content) {
-        AtomicFile& output = *files_.emplace_back(std::make_unique<AtomicFile>(file));
-        output.stream() << content;
-        output.finish();
-    }
-    void commit() const {
-        std::vector<AtomicFile*> all;
-        for (const auto& file : files_) all.push_back(file.get());
-        commit_together(all);
-    }
-
-  private:
-    std::vector<std::unique_ptr<AtomicFile>> files_;
-};
 
 /// The programs of the library in a folder, by the names in its list. Throws InputError if the folder has a
 /// program that the list does not name: it may belong to another library.
@@ -201,7 +175,7 @@ std::string solution_lines(const Instance& instance) {
 /// Nothing if there is no program.
 std::optional<Instance> instance_of(const Scene& scene, const std::string& name, Formulation formulation,
                                     const RldParameters& parameters, double time_limit_ms,
-                                    const TimedReport& exact) {
+                                    const SolvedScene& exact) {
     const Deadline no_deadline;
     const LimitedProblem limited = make_problem(scene, parameters, parts(formulation).extent, no_deadline);
     if (!limited.problem || limited.problem->edges.empty()) return std::nullopt;
@@ -275,15 +249,8 @@ InstanceClass class_of(const KnownOptimum& optimum) {
 }
 
 std::string_view to_string(InstanceClass instance_class) {
-    switch (instance_class) {
-        case InstanceClass::easy:
-            return "easy";
-        case InstanceClass::hard:
-            return "hard";
-        case InstanceClass::open:
-            break;
-    }
-    return "open";
+    constexpr std::array<std::string_view, 3> kNames{"easy", "hard", "open"};
+    return kNames.at(static_cast<std::size_t>(instance_class));
 }
 
 std::vector<InstanceScene> instance_scenes(const InstanceOptions& options) {
@@ -294,9 +261,8 @@ std::vector<InstanceScene> instance_scenes(const InstanceOptions& options) {
         for (const AnnotatedScene& scene : scenes) {
             if (!nearest || *nearest < scene.scene.cones.size()) of_size.push_back(&scene);
         }
-        const std::size_t count = std::min(of_size.size(), options.limit.value_or(of_size.size()));
-        for (std::size_t i = 0; i < count; ++i)
-            sets.emplace_back(of_size[i * of_size.size() / count], nearest);
+        for (const AnnotatedScene* const scene : spread(of_size, options.limit))
+            sets.emplace_back(scene, nearest);
     }
     std::ranges::stable_sort(sets, {}, [](const auto& set) { return set.first; });
     std::vector<InstanceScene> all;
@@ -328,7 +294,7 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
     remove_abandoned_files(folder);
     const std::vector<std::filesystem::path> earlier = listed_programs(folder);
     InstanceCounts counts;
-    Files files;
+    FilesTogether files;
     std::set<std::filesystem::path> written;
     std::string list;
     std::string solutions;
@@ -337,7 +303,7 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
         for (const InstanceObjective& objective : options.objectives) {
             const RldParameters& parameters = objective.parameters;
             const std::string scene_name = set.name + objective.suffix();
-            const TimedReport exact = solve_exactly(set.scene, scene_name, parameters, options.time_limit_ms);
+            const SolvedScene exact = solve_exactly(set.scene, scene_name, parameters, options.time_limit_ms);
             const std::vector<NamedFeature> features = features_of_problem(set.scene, parameters);
             if (index.empty()) index = index_head(features);
             for (const Formulation formulation : kFormulations) {

@@ -5,8 +5,6 @@ import math
 import re
 from dataclasses import dataclass, field
 
-INFINITE = 1e30
-
 
 @dataclass
 class Program:

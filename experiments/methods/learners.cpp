@@ -3,16 +3,13 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/recipe.hpp"
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/file_hash.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/parameter_file.hpp"
-#include "evaluation/formats/rank_net_file.hpp"
 #include "evaluation/formats/scene_set.hpp"
-#include "evaluation/formats/step_score_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/training/front_training_run.hpp"
-#include "experiments/training/rld_training_run.hpp"
+#include "experiments/training/front_training.hpp"
+#include "experiments/training/rld_training.hpp"
 #include "experiments/training/training_run.hpp"
 #include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
@@ -67,12 +64,8 @@ void learn_steps(const LearningOptions& options, const fs::path& file) {
     run.tracks = options.tracks;
     run.scenes = options.scenes;
     run.training.search = extended_search_options();
-    run.training.epochs = 3;
-    run.training.learning_rate = 0.05;
-    run.training.weight_decay = 1.0;
     run.training.seed = options.scenes.seed;
-    const StepTrainingRun result = run_step_training(run);
-    write(file, step_scores_json(result.scores, result.record));
+    write(file, run_step_training(run).file);
 }
 
 void learn_clc(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
@@ -94,8 +87,7 @@ void learn_clc(const DetectorRecipe& /*recipe*/, const LearningOptions& options,
     run.candidates.max_per_scene = 200;
     run.training.late_divergence_penalty = 0.2;
     run.training.unusable_penalty = 2.0;
-    const TrainingRun result = run_training(run);
-    write(folder / kExtendedNet, rank_net_json(result.weights, result.record));
+    write(folder / kExtendedNet, run_training(run).file);
 }
 
 void learn_clc_paper(const DetectorRecipe& /*recipe*/, const LearningOptions& options,
@@ -104,8 +96,7 @@ void learn_clc_paper(const DetectorRecipe& /*recipe*/, const LearningOptions& op
     TrainingRunOptions run = network_options(options);
     run.candidates.max_per_scene = 120;
     run.training.epochs = 30;
-    const TrainingRun result = run_training(run);
-    write(folder / kPaperNet, rank_net_json(result.weights, result.record));
+    write(folder / kPaperNet, run_training(run).file);
 }
 
 ClcOptions clc_options(const fs::path& folder) {
@@ -231,26 +222,25 @@ constexpr double kLearnedRldRate = 0.02;
 void learn_rld(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kLearnedRld;
     if (fs::exists(file)) return;
-    RldTrainingRunOptions run;
-    run.tracks = options.tracks;
-    run.training.units = kLearnedRldUnits;
-    run.training.steps =
+    RldTrainingOptions training;
+    training.units = kLearnedRldUnits;
+    training.steps =
         static_cast<std::size_t>(std::lround(options.rld_steps * static_cast<double>(kLearnedRldSteps)));
-    run.training.learning_rate = kLearnedRldRate;
-    run.training.seed = options.scenes.seed;
-    run.training.threads = options.scenes.threads;
+    training.learning_rate = kLearnedRldRate;
+    training.seed = options.scenes.seed;
+    training.threads = options.scenes.threads;
     RldTrainingRun result;
     if (options.without_colors.empty()) {
-        run.training.checkpoint = folder / kLearnedRldCheckpoint;
-        result = run_rld_training(run, {});
+        training.checkpoint = folder / kLearnedRldCheckpoint;
+        result = run_rld_training(options.tracks, training, {});
     } else {
         result.parameters = read_rld_parameters(options.without_colors / kLearnedRld);
     }
     if (options.scenes.with_color) {
-        run.training.parameters = result.parameters;
-        run.training.scenes.colored_share = kColoredShare;
-        run.training.checkpoint = folder / kColoredRldCheckpoint;
-        result = run_rld_training(run, {});
+        training.parameters = result.parameters;
+        training.scenes.colored_share = kColoredShare;
+        training.checkpoint = folder / kColoredRldCheckpoint;
+        result = run_rld_training(options.tracks, training, {});
     }
     write_rld_parameters(file, result.parameters, result.record);
     for (const char* checkpoint : {kLearnedRldCheckpoint, kColoredRldCheckpoint})

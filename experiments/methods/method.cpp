@@ -211,7 +211,8 @@ DetectorMaker Method::learned_maker(const std::filesystem::path& folder, const R
     }
     return [made = std::get<DetectorFactory>(std::move(learned)), known = name,
             limits = options.limits](const std::string& /*track*/) {
-        return std::make_unique<TimedLaneDetector>(known, made(), limits, std::nullopt, std::nullopt);
+        return std::make_unique<TimedLaneDetector>(known, answer_drivable_lanes(made()), limits, std::nullopt,
+                                                   std::nullopt);
     };
 }
 

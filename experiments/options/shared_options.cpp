@@ -5,6 +5,7 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 
 #include <algorithm>
@@ -157,9 +158,7 @@ std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option
 }
 
 CLI::Option* add_tracks_option(CLI::App& command, std::vector<std::string>& tracks, const std::string& more) {
-    return command.add_option(
-        "--tracks", tracks,
-        "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE" + more);
+    return command.add_option("--tracks", tracks, track_grammar() + more);
 }
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {

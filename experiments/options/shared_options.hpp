@@ -28,6 +28,15 @@ inline constexpr std::size_t kMaxCones = 100'000;
 [[nodiscard]] std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option,
                                                                      std::span<const std::string> texts);
 
+/// At most `limit` of them, evenly spread.
+template <typename Value>
+[[nodiscard]] std::vector<Value> spread(const std::vector<Value>& all, std::optional<std::size_t> limit) {
+    if (!limit || all.size() <= *limit) return all;
+    std::vector<Value> some;
+    for (std::size_t i = 0; i < *limit; ++i) some.push_back(all[i * all.size() / *limit]);
+    return some;
+}
+
 /// --tracks SPEC...; `more` is added to the help.
 CLI::Option* add_tracks_option(CLI::App& command, std::vector<std::string>& tracks,
                                const std::string& more = "");

@@ -3,10 +3,10 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/centre_line.hpp"
-#include "model/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -109,6 +109,22 @@ RaceCourse skidpad_shape() {
     course.rest_m = kSkidpadRest_m;
     course.phases = {"approach", "right 1", "right 2", "left 1", "left 2", "exit"};
     return course;
+}
+
+/// A place on a circle around the middle of the right (-1) or left (1) circle of a skidpad, from where the
+/// car enters it.
+Point on_circle(double side, double radius_m, double angle_rad) {
+    const Point direction(std::sin(angle_rad), -side * std::cos(angle_rad));
+    return Point(0.0, side * kSkidpadRadius_m) + radius_m * direction;
+}
+
+/// In the right circle, the inner cones are on the right of the car, so they are yellow.
+ConeColor inner_color(double side) {
+    return side < 0.0 ? ConeColor::yellow : ConeColor::blue;
+}
+
+ConeColor outer_color(double side) {
+    return inner_color(-side);
 }
 
 /// Draws the properties that the rules of an event leave open.
@@ -222,20 +238,13 @@ RaceCourse varied_skidpad(std::uint64_t seed) {
     // Places along the ring, turned by a random angle.
     const double turned = vary.chance(0.5) ? 0.0 : vary.number(0.0, 1.0);
     for (const double side : {-1.0, 1.0}) {
-        const Point centre(0.0, side * kSkidpadRadius_m);
-        const auto direction = [&](double angle_rad) {
-            return Point(std::sin(angle_rad), -side * std::cos(angle_rad));
-        };
         for (int i = 0; i < 16; ++i) {
-            vary.set(course, centre + inner_m * direction(2.0 * kPi * (i + turned) / 16),
-                     side < 0.0 ? ConeColor::yellow : ConeColor::blue);
+            vary.set(course, on_circle(side, inner_m, 2.0 * kPi * (i + turned) / 16), inner_color(side));
         }
         for (int i = 0; i < outer_places && has_outer; ++i) {
-            const Point place = centre + outer_m * direction(2.0 * kPi * (i + turned) / outer_places);
+            const Point place = on_circle(side, outer_m, 2.0 * kPi * (i + turned) / outer_places);
             const bool in_other_lane = side * place.y() < half_m - 0.05;
-            if (!in_other_lane) {
-                vary.set(course, place, side < 0.0 ? ConeColor::blue : ConeColor::yellow);
-            }
+            if (!in_other_lane) vary.set(course, place, outer_color(side));
         }
     }
     const double lane_half_m = half_m + vary.number(0.0, 0.15);
@@ -275,6 +284,32 @@ void measure(RaceCourse& course) {
     course.length_m = polyline_length_m(points, course.closed);
 }
 
+bool crosses(const std::vector<Point>& boundary, const Segment& way) {
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        const Segment edge{boundary[i], boundary[(i + 1) % boundary.size()]};
+        // Skips the boundary points that are far away, which are most of them.
+        if ((edge.from - way.from).squaredNorm() > 400.0 && (edge.to - way.from).squaredNorm() > 400.0 &&
+            (edge.to - edge.from).squaredNorm() < 100.0) {
+            continue;
+        }
+        if (segments_intersect(edge, way)) return true;
+    }
+    return false;
+}
+
+bool is_inside(const std::vector<Point>& polygon, const Point& point) {
+    bool inside = false;
+    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+        const Point& a = polygon[i];
+        const Point& b = polygon[j];
+        if ((a.y() > point.y()) != (b.y() > point.y()) &&
+            point.x() < (b.x() - a.x()) * (point.y() - a.y()) / (b.y() - a.y()) + a.x()) {
+            inside = !inside;
+        }
+    }
+    return inside;
+}
+
 }  // namespace
 
 RaceCourse circuit(const Track& track) {
@@ -284,11 +319,11 @@ RaceCourse circuit(const Track& track) {
     RaceCourse course;
     course.name = track.name;
     course.cones = track.cones;
-    for (const std::size_t i : track.left) {
-        if (course.cones[i].color != ConeColor::orange) course.cones[i].color = ConeColor::blue;
-    }
-    for (const std::size_t i : track.right) {
-        if (course.cones[i].color != ConeColor::orange) course.cones[i].color = ConeColor::yellow;
+    for (const auto* const side : {&track.left, &track.right}) {
+        const ConeColor color = side == &track.left ? ConeColor::blue : ConeColor::yellow;
+        for (const std::size_t i : *side) {
+            if (course.cones[i].color != ConeColor::orange) course.cones[i].color = color;
+        }
     }
     course.closed = true;
     course.lane = boundaries(track);
@@ -320,31 +355,22 @@ RaceCourse skidpad_course() {
     RaceCourse course = skidpad_shape();
     constexpr int kConesPerCircle = 16;
     for (const double side : {-1.0, 1.0}) {
-        const Point centre(0.0, side * kSkidpadRadius_m);
         for (int i = 0; i < kConesPerCircle; ++i) {
             const double angle_rad = 2.0 * kPi * i / kConesPerCircle;
-            const Point direction(std::sin(angle_rad), -side * std::cos(angle_rad));
-            const Point inner = centre + kSkidpadInner_m * direction;
-            const Point outer = centre + kSkidpadOuter_m * direction;
-            // In the right circle, the inner cones are on the right of the car, so they are yellow.
-            add_cone(course, inner.x(), inner.y(), side < 0.0 ? ConeColor::yellow : ConeColor::blue);
+            const Point inner = on_circle(side, kSkidpadInner_m, angle_rad);
+            const Point outer = on_circle(side, kSkidpadOuter_m, angle_rad);
+            add_cone(course, inner.x(), inner.y(), inner_color(side));
             // Outer cones inside the lane of entry, exit or the other circle are left out.
-            if (std::abs(outer.y()) > kSkidpadHalfWidth_m + 0.1 && side * outer.y() > 0.0) {
-                add_cone(course, outer.x(), outer.y(), side < 0.0 ? ConeColor::blue : ConeColor::yellow);
-            }
+            if (std::abs(outer.y()) > kSkidpadHalfWidth_m + 0.1 && side * outer.y() > 0.0)
+                add_cone(course, outer.x(), outer.y(), outer_color(side));
         }
     }
-    const double exit_m[] = {11.0, 16.0, 21.0, 25.0};
-    const double entry_m[] = {-20.0, -15.0, -11.25};
     const double junction_m =
         std::sqrt(kSkidpadOuter_m * kSkidpadOuter_m - std::pow(kSkidpadRadius_m - kSkidpadHalfWidth_m, 2.0));
     for (const double x_m : {-junction_m, junction_m}) {
         add_pair(course, x_m, kSkidpadHalfWidth_m, ConeColor::yellow, ConeColor::blue);
     }
-    for (const double x_m : entry_m) {
-        add_pair(course, x_m, kSkidpadHalfWidth_m, ConeColor::orange, ConeColor::orange);
-    }
-    for (const double x_m : exit_m) {
+    for (const double x_m : {-20.0, -15.0, -11.25, 11.0, 16.0, 21.0, 25.0}) {
         add_pair(course, x_m, kSkidpadHalfWidth_m, ConeColor::orange, ConeColor::orange);
     }
     for (const double x_m : {-1.3, 1.3}) add_pair(course, x_m, 2.0, ConeColor::orange, ConeColor::orange);
@@ -381,6 +407,53 @@ RaceCourse varied_mission_course(Mission mission, std::uint64_t seed) {
     course.name = "varied " + course.name;
     measure(course);
     return course;
+}
+
+void CourseFoot::follow(const Point& point, double reach_m) {
+    const auto steps = static_cast<long>(std::ceil(reach_m / course_.step_m));
+    const auto middle = static_cast<long>(std::floor(at_m_ / course_.step_m));
+    double best_m = std::numeric_limits<double>::infinity();
+    double best_at_m = at_m_;
+    for (long i = middle - steps; i <= middle + steps; ++i) {
+        const auto from = place(i);
+        const auto to = place(i + 1);
+        if (!from || !to) continue;
+        const FootPoint foot = foot_point(point, {*from, *to});
+        if (foot.distance_m >= best_m) continue;
+        best_m = foot.distance_m;
+        best_at_m = (static_cast<double>(i) + foot.parameter) * course_.step_m;
+    }
+    distance_m_ = best_m;
+    at_m_ = best_at_m;
+}
+
+std::optional<Point> CourseFoot::place(long number) const {
+    const auto size = static_cast<long>(course_.line.size());
+    if (course_.closed)
+        return course_.line[static_cast<std::size_t>(((number % size) + size) % size)].position;
+    if (number < 0 || number >= size) return std::nullopt;
+    return course_.line[static_cast<std::size_t>(number)].position;
+}
+
+bool stays_in_ring(const TrackBoundaries& lane, const Segment& way) {
+    if (crosses(lane.left, way) || crosses(lane.right, way)) return false;
+    return is_inside(lane.left, way.to) != is_inside(lane.right, way.to);
+}
+
+bool leaves(const RaceCourse& course, const std::vector<Point>& path, double up_to_m, CourseFoot at) {
+    double along_m = 0.0;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const double step_m = (path[i] - path[i - 1]).norm();
+        along_m += step_m;
+        if (along_m > up_to_m) return false;
+        if (course.half_width_m) {
+            at.follow(path[i], 2.0 + step_m);
+            if (at.distance_m() > *course.half_width_m) return true;
+        } else if (!stays_in_ring(course.lane, {path[i - 1], path[i]})) {
+            return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace conelane::experiments

@@ -2,6 +2,7 @@
 
 #include "conelane/planner.hpp"
 #include "evaluation/world/track.hpp"
+#include "model/geometry.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -54,5 +55,35 @@ struct RaceCourse {
 /// do not belong to the course. The frame is as above, the start within 1.5 m of the start of the rules. The
 /// big cones of an acceleration's finish are always present.
 [[nodiscard]] RaceCourse varied_mission_course(Mission mission, std::uint64_t seed);
+
+/// The foot of a car on the true line, followed from step to step, so that other stretches of the line at the
+/// same distance do not count. The course must outlive it.
+class CourseFoot {
+  public:
+    CourseFoot(const RaceCourse& course, double at_m) : course_(course), at_m_(at_m) {}
+
+    /// Moves by at most `reach_m`, forward or backward.
+    void follow(const Point& point, double reach_m = 3.0);
+
+    /// Arc length with completed rounds. A step counts as step_m, also a shorter last step of a round.
+    [[nodiscard]] double at_m() const { return at_m_; }
+    [[nodiscard]] double distance_m() const { return distance_m_; }
+    [[nodiscard]] double round_m() const { return static_cast<double>(course_.line.size()) * course_.step_m; }
+    /// The point of the line with this number; nothing where a line that is driven once has none.
+    [[nodiscard]] std::optional<Point> place(long number) const;
+
+  private:
+    const RaceCourse& course_;
+    double at_m_;
+    double distance_m_ = 0.0;
+};
+
+/// Whether the segment between two points stays inside the lane of a circuit: it crosses no boundary between
+/// neighbouring cones, and ends in the ring between the boundaries.
+[[nodiscard]] bool stays_in_ring(const TrackBoundaries& lane, const Segment& way);
+
+/// Whether the first metres of a path leave the lane. `at`: the car's position.
+[[nodiscard]] bool leaves(const RaceCourse& course, const std::vector<Point>& path, double up_to_m,
+                          CourseFoot at);
 
 }  // namespace conelane::experiments

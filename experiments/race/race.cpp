@@ -2,14 +2,12 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "experiments/race/vehicle.hpp"
-#include "model/geometry.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <memory>
+#include <deque>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -50,98 +48,12 @@ Point middle_of(const Pose& rear_axle) {
     return rear_axle.position + kMiddleAhead_m * rear_axle.heading();
 }
 
-/// The foot of a car on the true line, followed from step to step, so that other stretches of the line at the
-/// same distance do not count.
-class Follower {
-  public:
-    Follower(const RaceCourse& course, double at_m) : course_(course), at_m_(at_m) {}
-
-    /// Moves by at most `reach_m`, forward or backward.
-    void follow(const Point& point, double reach_m = 3.0) {
-        const auto steps = static_cast<long>(std::ceil(reach_m / course_.step_m));
-        const auto middle = static_cast<long>(std::floor(at_m_ / course_.step_m));
-        double best_m = std::numeric_limits<double>::infinity();
-        double best_at_m = at_m_;
-        for (long i = middle - steps; i <= middle + steps; ++i) {
-            const auto from = place(i);
-            const auto to = place(i + 1);
-            if (!from || !to) continue;
-            const FootPoint foot = foot_point(point, {*from, *to});
-            if (foot.distance_m >= best_m) continue;
-            best_m = foot.distance_m;
-            best_at_m = (static_cast<double>(i) + foot.parameter) * course_.step_m;
-        }
-        distance_m_ = best_m;
-        at_m_ = best_at_m;
-    }
-
-    /// Arc length with completed rounds. A step counts as step_m, also a shorter last step of a round.
-    [[nodiscard]] double at_m() const { return at_m_; }
-    [[nodiscard]] double distance_m() const { return distance_m_; }
-    [[nodiscard]] double round_m() const { return static_cast<double>(course_.line.size()) * course_.step_m; }
-
-    [[nodiscard]] std::optional<Point> place(long i) const {
-        const auto size = static_cast<long>(course_.line.size());
-        if (course_.closed)
-            return course_.line[static_cast<std::size_t>(((i % size) + size) % size)].position;
-        if (i < 0 || i >= size) return std::nullopt;
-        return course_.line[static_cast<std::size_t>(i)].position;
-    }
-
-  private:
-    const RaceCourse& course_;
-    double at_m_;
-    double distance_m_ = 0.0;
-};
-
-bool crosses(const std::vector<Point>& boundary, const Segment& way) {
-    for (std::size_t i = 0; i < boundary.size(); ++i) {
-        const Segment edge{boundary[i], boundary[(i + 1) % boundary.size()]};
-        // Skips the boundary points that are far away, which are most of them.
-        if ((edge.from - way.from).squaredNorm() > 400.0 && (edge.to - way.from).squaredNorm() > 400.0 &&
-            (edge.to - edge.from).squaredNorm() < 100.0) {
-            continue;
-        }
-        if (segments_intersect(edge, way)) return true;
-    }
-    return false;
+Point left_of(const Pose& pose) {
+    return {-pose.heading().y(), pose.heading().x()};
 }
 
-bool is_inside(const std::vector<Point>& polygon, const Point& point) {
-    bool inside = false;
-    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-        const Point& a = polygon[i];
-        const Point& b = polygon[j];
-        if ((a.y() > point.y()) != (b.y() > point.y()) &&
-            point.x() < (b.x() - a.x()) * (point.y() - a.y()) / (b.y() - a.y()) + a.x()) {
-            inside = !inside;
-        }
-    }
-    return inside;
-}
-
-/// Whether the segment between two points stays inside the lane of a circuit: it crosses no boundary between
-/// neighbouring cones, and ends in the ring between the boundaries.
-bool stays_in_ring(const TrackBoundaries& lane, const Segment& way) {
-    if (crosses(lane.left, way) || crosses(lane.right, way)) return false;
-    return is_inside(lane.left, way.to) != is_inside(lane.right, way.to);
-}
-
-/// Whether the first metres of a path leave the lane. `at`: the car's position.
-bool leaves(const RaceCourse& course, const std::vector<Point>& path, double up_to_m, Follower at) {
-    double along_m = 0.0;
-    for (std::size_t i = 1; i < path.size(); ++i) {
-        const double step_m = (path[i] - path[i - 1]).norm();
-        along_m += step_m;
-        if (along_m > up_to_m) return false;
-        if (course.half_width_m) {
-            at.follow(path[i], 2.0 + step_m);
-            if (at.distance_m() > *course.half_width_m) return true;
-        } else if (!stays_in_ring(course.lane, {path[i - 1], path[i]})) {
-            return true;
-        }
-    }
-    return false;
+Point direction(double angle_rad) {
+    return {std::cos(angle_rad), std::sin(angle_rad)};
 }
 
 /// Whether a line moved by more than kUnsteady_m within kNear_m of the car, where both lines exist.
@@ -176,33 +88,196 @@ double uniform(Generator& random, double low, double high) {
     return low < high ? boost::random::uniform_real_distribution<double>(low, high)(random) : low;
 }
 
-/// Delivers frames, some of them late, twice or in another order.
-class Delivery {
-  public:
-    Delivery(RaceFault fault, Generator& random) : fault_(fault), random_(random) {}
+/// An answer on its way to the car; then the path that the car drives by.
+struct Answer {
+    Drive drive;
+    double frame_s = 0.0;
+    int arrives = 0;      ///< the step
+    double from_m = 0.0;  ///< how far the path has been followed
+};
 
-    void put(Frame frame, int step) {
+/// The car drives by the path of the newest frame. Between frames it knows its own motion, so the error of
+/// the pose that it believes stays constant.
+struct Car {
+    Vehicle vehicle;
+    double speed_mps = 0.0;
+    double error_left_m = 0.0;
+    double error_yaw_rad = 0.0;
+    std::optional<Answer> path = {};
+    double newest_s = -1.0;  ///< time of the newest frame with an answer
+    bool has_begun = false;  ///< it has had a path
+    bool is_stopping = false;
+    bool is_braking = false;
+
+    [[nodiscard]] Point middle() const { return middle_of(vehicle.pose); }
+
+    /// In the frame of the world.
+    [[nodiscard]] Pose believed() const {
+        const Pose& pose = vehicle.pose;
+        return {pose.position + error_left_m * left_of(pose), pose.yaw_rad + error_yaw_rad};
+    }
+
+    void believe(const Pose& believed) {
+        error_left_m = vehicle.pose.left_m(believed.position);
+        error_yaw_rad = believed.yaw_rad - vehicle.pose.yaw_rad;
+    }
+
+    void take(Answer answer) {
+        newest_s = answer.frame_s;
+        is_stopping = answer.drive.stop;
+        is_braking = answer.drive.brake;
+        if (answer.drive.path.size() >= 2) {
+            path = std::move(answer);
+            has_begun = true;
+        } else if (is_braking) {
+            path.reset();
+        }
+    }
+
+    void drop_old_path(double time_s) {
+        if (path && !path->drive.stop && time_s - path->frame_s > kOldestPath_s + 1e-9) path.reset();
+    }
+
+    void drive(const RaceOptions& options, const MapFrame& map) {
+        const double change_mps = kMaxAcceleration_mps2 * kStep_s;
+        if (is_braking || (is_stopping && options.with_stop)) {
+            speed_mps = std::max(0.0, speed_mps - change_mps);
+        } else if (has_begun || !options.with_stop) {
+            speed_mps = std::min(options.speed_mps, speed_mps + change_mps);
+        }
+        const double wanted_rad =
+            path ? pursue(map.to_map(believed()), path->drive.path, lookahead_m(speed_mps), path->from_m)
+                 : 0.0;  // straight on without a path
+        vehicle.drive(speed_mps, wanted_rad, kStep_s);
+    }
+};
+
+/// Whether the car fits into the lane beside its start.
+bool fits(const RaceCourse& course, const Pose& pose, const Pose& start) {
+    const Point middle = middle_of(pose);
+    if (course.half_width_m) return std::abs(start.left_m(middle)) <= *course.half_width_m - kHalfWidth_m;
+    const Point aside = kHalfWidth_m * left_of(pose);
+    return stays_in_ring(course.lane, {start.position, middle}) &&
+           stays_in_ring(course.lane, {middle, middle + aside}) &&
+           stays_in_ring(course.lane, {middle, middle - aside});
+}
+
+/// The pose at the start, with the error of the start.
+Pose start_pose(const RaceCourse& course, const RaceOptions& options, Generator& random) {
+    const Pose at = course.line.at(static_cast<std::size_t>(std::lround(course.start_m / course.step_m)));
+    if (!(options.start_error_m > 0.0 || options.start_error_rad > 0.0)) return at;
+    const double angle_rad = uniform(random, -std::numbers::pi, std::numbers::pi);
+    const double distance_m = options.start_error_m * std::sqrt(boost::random::uniform_01<double>()(random));
+    const Point along = distance_m * std::cos(angle_rad) * at.heading();
+    Pose moved = at;
+    moved.yaw_rad += uniform(random, -options.start_error_rad, options.start_error_rad);
+    // The largest offset at which the car still fits into the lane.
+    double left_m = distance_m * std::sin(angle_rad);
+    for (int i = 0; i < 20; ++i, left_m *= 0.8) {
+        moved.position = at.position + along + left_m * left_of(at);
+        if (fits(course, moved, at)) break;
+    }
+    return moved;
+}
+
+/// What the car sees, in a map that drifts and jumps.
+class Sensor {
+  public:
+    Sensor(const RaceCourse& course, const RaceOptions& options, const Point& start, Generator& random)
+        : options_(options),
+          start_(start),
+          random_(random),
+          world_(course, options.sight),
+          drift_direction_rad_(uniform(random, -std::numbers::pi, std::numbers::pi)),
+          drift_sense_(boost::random::uniform_01<double>()(random) < 0.5 ? -1.0 : 1.0) {
+        if (!options_.with_any_map) return;
+        const double x_m = uniform(random, -100.0, 100.0);
+        const double y_m = uniform(random, -100.0, 100.0);
+        first_map_ = {uniform(random, -std::numbers::pi, std::numbers::pi), {x_m, y_m}};
+    }
+
+    /// `share`: of a lap that has been driven. The car believes another pose from now on.
+    [[nodiscard]] Frame look(Car& car, double share, int step) {
+        const double time_s = step * kStep_s;
+        const auto comes = [&](double every_s) {
+            return step > 0 && std::fmod(time_s + 1e-9, every_s) < kFrame_s / 2.0;
+        };
+        if (options_.fault == RaceFault::jump && comes(kFaultEvery_s)) {
+            first_map_.shift += kJump_m * direction(uniform(random_, -std::numbers::pi, std::numbers::pi));
+        }
+        if (options_.fault == RaceFault::ids && comes(kFaultEvery_s)) world_.change_ids();
+        map_ = first_map_.turned(drift_sense_ * options_.drift_rad * share, start_,
+                                 options_.drift_m * share * direction(drift_direction_rad_));
+        const Pose believed = world_.disturbed(car.vehicle.pose);
+        car.believe(believed);
+        Frame frame = world_.look(believed, map_, time_s);
+        const bool is_dark = options_.fault == RaceFault::blackout && time_s >= kBlackoutEvery_s &&
+                             std::fmod(time_s + 1e-9, kBlackoutEvery_s) < kBlackout_s - 1e-6;
+        if (is_dark) frame.cones.clear();
+        last_frame_s_ = time_s;
+        return frame;
+    }
+
+    [[nodiscard]] const MapFrame& map() const { return map_; }
+    [[nodiscard]] double last_frame_s() const { return last_frame_s_; }
+    [[nodiscard]] const std::vector<Point>& false_positives() const { return world_.false_positives(); }
+    [[nodiscard]] std::vector<Point> to_world(std::vector<Point> places) const {
+        for (Point& place : places) place = map_.to_world(place);
+        return places;
+    }
+
+  private:
+    const RaceOptions& options_;
+    Point start_;
+    Generator& random_;
+    World world_;
+    double drift_direction_rad_;
+    double drift_sense_;
+    MapFrame first_map_;
+    MapFrame map_;
+    double last_frame_s_ = 0.0;
+};
+
+/// Delivers frames, some of them late, twice or in another order, and answers after their latency.
+class Transport {
+  public:
+    Transport(const RaceOptions& options, Generator& random)
+        : fault_(options.fault),
+          latency_(static_cast<int>(std::lround(options.latency_s / kStep_s))),
+          random_(random) {}
+
+    void send(Frame frame, int step) {
         int due = step;
         const bool is_faulty = boost::random::uniform_01<double>()(random_) < kFaultyShare;
         const int delay = boost::random::uniform_int_distribution<int>(1, 3)(random_) * kStepsPerFrame;
         if (is_faulty && (fault_ == RaceFault::late || fault_ == RaceFault::order)) due += delay;
         if (fault_ == RaceFault::late) due = std::max(due, last_due_);
         last_due_ = due;
-        if (is_faulty && fault_ == RaceFault::twice) waiting_.push_back({due, frame});
-        waiting_.push_back({due, std::move(frame)});
+        if (is_faulty && fault_ == RaceFault::twice) frames_.push_back({due, frame});
+        frames_.push_back({due, std::move(frame)});
         // Behind all frames that are due earlier; of frames due together, the latest of the run is first.
-        std::ranges::stable_sort(waiting_, {}, &Waiting::due);
+        std::ranges::stable_sort(frames_, {}, &Waiting::due);
         if (fault_ == RaceFault::order) {
-            std::ranges::stable_sort(waiting_, [](const Waiting& a, const Waiting& b) {
+            std::ranges::stable_sort(frames_, [](const Waiting& a, const Waiting& b) {
                 return a.due != b.due ? a.due < b.due : a.frame.time_s > b.frame.time_s;
             });
         }
     }
-    [[nodiscard]] std::optional<Frame> next(int step) {
-        if (waiting_.empty() || waiting_.front().due > step) return std::nullopt;
-        Frame frame = std::move(waiting_.front().frame);
-        waiting_.erase(waiting_.begin());
+    [[nodiscard]] std::optional<Frame> next_frame(int step) {
+        if (frames_.empty() || frames_.front().due > step) return std::nullopt;
+        Frame frame = std::move(frames_.front().frame);
+        frames_.pop_front();
         return frame;
+    }
+
+    void send(Drive drive, double frame_s, int step) {
+        answers_.push_back({std::move(drive), frame_s, step + latency_});
+    }
+    [[nodiscard]] std::optional<Answer> next_answer(int step) {
+        if (answers_.empty() || answers_.front().arrives > step) return std::nullopt;
+        Answer answer = std::move(answers_.front());
+        answers_.pop_front();
+        return answer;
     }
 
   private:
@@ -211,312 +286,138 @@ class Delivery {
         Frame frame;
     };
     RaceFault fault_;
+    int latency_;  ///< in steps
     Generator& random_;
     int last_due_ = 0;
-    std::vector<Waiting> waiting_;
+    std::deque<Waiting> frames_;
+    std::deque<Answer> answers_;
 };
 
-/// One race in progress.
-class Run {
+/// Watches the car and the answers, and says how the race ended.
+class Referee {
   public:
-    Run(const RaceCourse& course, const RaceOptions& options, const Driver& driver)
-        : course_(course),
-          options_(options),
-          driver_(driver),
-          random_(generator_of(fmt::format("{}/{}/run", course.name, options.sight.false_positive_rate),
-                               options.sight.seed)),
-          world_(course, options.sight),
-          delivery_(options.fault, random_),
-          foot_(course, course.start_m) {
-        place_car();
-        const double way_m = course_.closed ? foot_.round_m() * options_.laps : *course_.finish_m - start_m_;
-        finish_m_ = course_.closed ? start_m_ + way_m : *course_.finish_m;
-        // A car that drives in circles does not finish.
-        longest_s_ = 2.5 * way_m / options_.speed_mps + 10.0 + (options_.with_stop ? 20.0 : 0.0);
-        lap_m_ = course_.closed ? foot_.round_m() : way_m;
-        drift_direction_rad_ = uniform(random_, -std::numbers::pi, std::numbers::pi);
-        drift_sense_ = boost::random::uniform_01<double>()(random_) < 0.5 ? -1.0 : 1.0;
-        if (options_.with_any_map) {
-            const double x_m = uniform(random_, -100.0, 100.0);
-            const double y_m = uniform(random_, -100.0, 100.0);
-            first_map_ = {uniform(random_, -std::numbers::pi, std::numbers::pi), {x_m, y_m}};
-        }
-    }
-
-    RaceResult drive() {
-        int step = 0;
-        for (; step * kStep_s < longest_s_ && !ended_; ++step) {
-            if (step % kStepsPerFrame == 0) sense(step);
-            while (std::optional<Frame> frame = delivery_.next(step)) answer(*frame, step);
-            take_path(step);
-            move();
-        }
-        result_.time_s = step * kStep_s;
-        finish_result();
-        return std::move(result_);
-    }
-
-  private:
-    struct Path {
-        Drive drive;
-        double frame_s = 0.0;
-        int arrives = 0;
-        double from_m = 0.0;
-    };
-
-    void place_car() {
-        const auto index = static_cast<std::size_t>(std::lround(course_.start_m / course_.step_m));
-        car_.pose = course_.line.at(index);
-        if (options_.start_error_m > 0.0 || options_.start_error_rad > 0.0) {
-            const double angle_rad = uniform(random_, -std::numbers::pi, std::numbers::pi);
-            const double distance_m =
-                options_.start_error_m * std::sqrt(boost::random::uniform_01<double>()(random_));
-            const double ahead_m = distance_m * std::cos(angle_rad);
-            const Pose at = car_.pose;
-            Pose moved = at;
-            moved.yaw_rad += uniform(random_, -options_.start_error_rad, options_.start_error_rad);
-            // The largest offset at which the car still fits into the lane.
-            double left_m = distance_m * std::sin(angle_rad);
-            for (int i = 0; i < 20; ++i, left_m *= 0.8) {
-                moved.position = at.position + ahead_m * at.heading() +
-                                 left_m * Point(-at.heading().y(), at.heading().x());
-                if (fits(moved, at)) break;
-            }
-            car_.pose = moved;
-        }
-        foot_.follow(middle_of(car_.pose), options_.start_error_m + 3.0);
+    Referee(const RaceCourse& course, const RaceOptions& options, const Point& middle)
+        : course_(course), options_(options), foot_(course, course.start_m) {
+        foot_.follow(middle, options.start_error_m + 3.0);
         start_m_ = foot_.at_m();
-        start_ = car_.pose.position;
-        speed_mps_ = options_.with_stop ? 0.0 : options_.speed_mps;
+        const double way_m = course.closed ? foot_.round_m() * options.laps : *course.finish_m - start_m_;
+        finish_m_ = course.closed ? start_m_ + way_m : *course.finish_m;
+        lap_m_ = course.closed ? foot_.round_m() : way_m;
+        // A car that drives in circles does not finish.
+        longest_s_ = 2.5 * way_m / options.speed_mps + 10.0 + (options.with_stop ? 20.0 : 0.0);
     }
 
-    [[nodiscard]] bool fits(const Pose& pose, const Pose& start) const {
-        const Point middle = middle_of(pose);
-        if (course_.half_width_m) {
-            return std::abs(start.left_m(middle)) <= *course_.half_width_m - kHalfWidth_m;
-        }
-        const Point to_left(-pose.heading().y(), pose.heading().x());
-        return stays_in_ring(course_.lane, {start.position, middle}) &&
-               stays_in_ring(course_.lane, {middle, middle + kHalfWidth_m * to_left}) &&
-               stays_in_ring(course_.lane, {middle, middle - kHalfWidth_m * to_left});
-    }
+    [[nodiscard]] bool has_ended(double time_s) const { return ended_ || time_s >= longest_s_; }
+    /// Of a lap that has been driven.
+    [[nodiscard]] double lap_share() const { return driven_m() / lap_m_; }
 
-    void sense(int step) {
-        const double time_s = step * kStep_s;
-        const auto comes = [&](double every_s) {
-            return step > 0 && std::fmod(time_s + 1e-9, every_s) < kFrame_s / 2.0;
-        };
-        if (options_.fault == RaceFault::jump && comes(kFaultEvery_s)) {
-            const double angle_rad = uniform(random_, -std::numbers::pi, std::numbers::pi);
-            first_map_.shift += kJump_m * Point(std::cos(angle_rad), std::sin(angle_rad));
-        }
-        if (options_.fault == RaceFault::ids && comes(kFaultEvery_s)) world_.change_ids();
-        const double share = std::max(0.0, foot_.at_m() - start_m_) / lap_m_;
-        map_ = first_map_.turned(
-            drift_sense_ * options_.drift_rad * share, start_,
-            options_.drift_m * share * Point(std::cos(drift_direction_rad_), std::sin(drift_direction_rad_)));
-        const Pose believed = world_.disturbed(car_.pose);
-        error_left_m_ = car_.pose.left_m(believed.position);
-        error_yaw_rad_ = believed.yaw_rad - car_.pose.yaw_rad;
-        Frame frame = world_.look(believed, map_, time_s);
-        const bool is_dark = options_.fault == RaceFault::blackout && time_s >= kBlackoutEvery_s &&
-                             std::fmod(time_s + 1e-9, kBlackoutEvery_s) < kBlackout_s - 1e-6;
-        if (is_dark) frame.cones.clear();
-        last_frame_s_ = time_s;
-        delivery_.put(std::move(frame), step);
-    }
-
-    /// Between frames the car knows its own motion, so the error of the pose stays constant.
-    [[nodiscard]] Pose believed() const {
-        const Point heading = car_.pose.heading();
-        return map_.to_map(Pose{car_.pose.position + error_left_m_ * Point(-heading.y(), heading.x()),
-                                car_.pose.yaw_rad + error_yaw_rad_});
-    }
-
-    void answer(const Frame& frame, int step) {
+    void note_time(double answer_ms) {
         ++result_.frames;
-        const auto begin = std::chrono::steady_clock::now();
-        Drive drive = driver_(frame);
-        result_.answer_ms.push_back(
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-        if (drive.is_refused) {
-            ++result_.frames_refused;
-            return;
-        }
+        result_.answer_ms.push_back(answer_ms);
+    }
+    void note_refusal() { ++result_.frames_refused; }
+    /// `path`: the first metres of the answer in the world; empty: none.
+    void note_answer(const Drive& drive, const std::vector<Point>& path) {
         is_planner_ = is_planner_ || !drive.state.empty();
-        const bool has_path = drive.path.size() >= 2;
-        std::vector<Point> seen_path;
-        if (has_path) {
-            drive.path = beginning(drive.path, 60.0);
-            for (const Point& point : beginning(drive.path, 20.0)) seen_path.push_back(map_.to_world(point));
+        if (path.empty()) {
+            ++result_.frames_without_path;
+        } else {
             if (!path_before_.empty()) {
                 ++pairs_;
-                if (moved(path_before_, seen_path)) ++unsteady_;
+                if (moved(path_before_, path)) ++unsteady_;
             }
-            if (!drive.is_flagged && leaves(course_, seen_path, std::min(kNear_m, drive.safe_m), foot_)) {
+            if (!drive.is_flagged && leaves(course_, path, std::min(kNear_m, drive.safe_m), foot_)) {
                 ++result_.wrong_unflagged;
             }
-        } else {
-            ++result_.frames_without_path;
         }
-        path_before_ = seen_path;
+        path_before_ = path;
         result_.laps_told = std::max(result_.laps_told, drive.lap);
         if (!drive.phase.empty() && (result_.phases.empty() || result_.phases.back() != drive.phase)) {
             result_.phases.push_back(drive.phase);
         }
-        if (options_.keep_replay) {
-            ReplayFrame kept{step * kStep_s, car_.pose, seen_path, {}, drive.state};
-            for (const Cone& cone : frame.cones) kept.seen.push_back(map_.to_world(cone.position));
-            result_.replay.push_back(std::move(kept));
-        }
-        coming_.push_back({std::move(drive), frame.time_s,
-                           step + static_cast<int>(std::lround(options_.latency_s / kStep_s))});
+    }
+    void keep(ReplayFrame frame) { result_.replay.push_back(std::move(frame)); }
+    void note_old_path() { result_.old_path_s += kStep_s; }
+
+    void note_stop() {
+        if (!options_.with_stop || result_.stop_said_m) return;
+        result_.stop_said_m = foot_.at_m() - finish_m_;
+        if (*result_.stop_said_m < 0.0) end(RaceEnd::stopped_early);
     }
 
-    void take_path(int step) {
-        while (!coming_.empty() && coming_.front().arrives <= step) {
-            Path next = std::move(coming_.front());
-            coming_.erase(coming_.begin());
-            // An answer to an older frame is worth less than the path that is being driven.
-            if (next.frame_s < newest_s_) continue;
-            newest_s_ = next.frame_s;
-            is_stopping_ = next.drive.stop;
-            is_braking_ = next.drive.brake;
-            if (next.drive.stop && options_.with_stop && !result_.stop_said_m) {
-                result_.stop_said_m = foot_.at_m() - finish_m_;
-                if (*result_.stop_said_m < 0.0) end(RaceEnd::stopped_early);
-            }
-            if (next.drive.path.size() >= 2) {
-                driven_ = std::move(next);
-                has_begun_ = true;
-            } else if (next.drive.brake) {
-                driven_.reset();
-            }
-        }
-        const double time_s = step * kStep_s;
-        // While a frame is being answered, the path of the frame before it is the latest one.
-        const bool is_old =
-            driven_ && driven_->frame_s - driven_->drive.age_s < last_frame_s_ - kFrame_s - 1e-9;
-        if (is_old) result_.old_path_s += kStep_s;
-        if (driven_ && !driven_->drive.stop && time_s - driven_->frame_s > kOldestPath_s + 1e-9) {
-            driven_.reset();
-        }
-    }
-
-    void change_speed() {
-        if (is_braking_ || (is_stopping_ && options_.with_stop)) {
-            speed_mps_ = std::max(0.0, speed_mps_ - kMaxAcceleration_mps2 * kStep_s);
-        } else if (has_begun_ || !options_.with_stop) {
-            speed_mps_ = std::min(options_.speed_mps, speed_mps_ + kMaxAcceleration_mps2 * kStep_s);
-        }
-    }
-
-    void move() {
-        change_speed();
-        const double wanted_rad = driven_ ? pursue(believed(), driven_->drive.path, lookahead_m(speed_mps_),
-                                                   driven_->from_m)
-                                          : 0.0;  // straight on without a path
-        const Point before = middle_of(car_.pose);
-        car_.drive(speed_mps_, wanted_rad, kStep_s);
-        const Point middle = middle_of(car_.pose);
+    /// The car has come from a place to where it is now.
+    void watch(const Point& before, const Car& car) {
+        const Point middle = car.middle();
         foot_.follow(middle);
-        note_hits(middle);
+        note_hits({middle, car.vehicle.pose.yaw_rad});
         errors_m_.push_back(foot_.distance_m());
         const bool is_out = course_.half_width_m ? foot_.distance_m() > *course_.half_width_m
                                                  : !stays_in_ring(course_.lane, {before, middle});
         if (is_out) {
-            result_.departure_m = std::max(0.0, foot_.at_m() - start_m_);
-            end(RaceEnd::departed);
-            return;
+            result_.departure_m = driven_m();
+            return end(RaceEnd::departed);
         }
         const double past_m = foot_.at_m() - finish_m_;
-        halted_steps_ = speed_mps_ > 0.0 ? 0 : halted_steps_ + 1;
-        const bool has_halted = halted_steps_ * kStep_s >= kMaxHalt_s;
+        halted_steps_ = car.speed_mps > 0.0 ? 0 : halted_steps_ + 1;
         if (!options_.with_stop) {
             if (past_m >= 0.0) end(RaceEnd::finished);
-            if (has_halted) end(RaceEnd::halted);
-            return;
-        }
-        if (past_m > course_.rest_m) {
+        } else if (past_m > course_.rest_m) {
             end(RaceEnd::not_stopped);
-            return;
-        }
-        if (speed_mps_ <= 0.0 && result_.stop_said_m && past_m >= 0.0) {
+        } else if (car.speed_mps <= 0.0 && result_.stop_said_m && past_m >= 0.0) {
             result_.rest_m = past_m;
             const bool tells_phases = is_planner_ && !course_.phases.empty();
             end(tells_phases && result_.phases != course_.phases ? RaceEnd::wrong_phases : RaceEnd::finished);
-        } else if (has_halted) {
-            end(RaceEnd::halted);
         }
+        if (halted_steps_ * kStep_s >= kMaxHalt_s) end(RaceEnd::halted);
     }
 
-    void note_hits(const Point& middle) {
-        const Pose pose{middle, car_.pose.yaw_rad};
-        for (std::size_t i = 0; i < course_.cones.size(); ++i) {
-            const Point& cone = course_.cones[i].position;
-            if ((cone - middle).squaredNorm() > 4.0) continue;
-            if (std::abs(pose.ahead_m(cone)) <= kHalfLength_m &&
-                std::abs(pose.left_m(cone)) <= kHalfWidth_m) {
-                hit_.insert(i);
-            }
-        }
-    }
-
-    void end(RaceEnd how) {
-        if (ended_) return;
-        result_.end = how;
-        ended_ = true;
-    }
-
-    void finish_result() {
-        result_.driven_m = std::max(0.0, foot_.at_m() - start_m_);
+    [[nodiscard]] RaceResult result(double time_s, const std::vector<Point>& false_positives) {
+        result_.time_s = time_s;
+        result_.false_positives = false_positives;
+        result_.driven_m = driven_m();
+        result_.finished_laps = result_.finished() ? 1 : 0;
         if (course_.closed) {
             result_.finished_laps = static_cast<int>(std::floor(result_.driven_m / foot_.round_m() + 1e-9));
-        } else {
-            result_.finished_laps = result_.finished() ? 1 : 0;
         }
         result_.cones_hit = static_cast<int>(hit_.size());
-        result_.false_positives = world_.false_positives();
         if (!errors_m_.empty()) {
             const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors_m_.size() - 1));
             std::ranges::nth_element(errors_m_, errors_m_.begin() + rank);
             result_.lateral_error_p95_m = errors_m_[static_cast<std::size_t>(rank)];
         }
         if (pairs_ > 0) result_.unsteady_share = static_cast<double>(unsteady_) / pairs_;
+        return std::move(result_);
+    }
+
+  private:
+    [[nodiscard]] double driven_m() const { return std::max(0.0, foot_.at_m() - start_m_); }
+
+    void note_hits(const Pose& middle) {
+        for (std::size_t i = 0; i < course_.cones.size(); ++i) {
+            const Point& cone = course_.cones[i].position;
+            if ((cone - middle.position).squaredNorm() > 4.0) continue;
+            if (std::abs(middle.ahead_m(cone)) <= kHalfLength_m &&
+                std::abs(middle.left_m(cone)) <= kHalfWidth_m) {
+                hit_.insert(i);
+            }
+        }
+    }
+
+    /// The first end counts.
+    void end(RaceEnd how) {
+        if (!ended_) result_.end = how;
+        ended_ = true;
     }
 
     const RaceCourse& course_;
     const RaceOptions& options_;
-    const Driver& driver_;
-    Generator random_;
-    World world_;
-    Delivery delivery_;
-    Follower foot_;
-    Vehicle car_;
-    double speed_mps_ = 0.0;
-    Point start_{0.0, 0.0};
+    CourseFoot foot_;
     double start_m_ = 0.0;
     double finish_m_ = 0.0;
     double lap_m_ = 0.0;
     double longest_s_ = 0.0;
-
-    MapFrame first_map_;
-    MapFrame map_;
-    double drift_direction_rad_ = 0.0;
-    double drift_sense_ = 1.0;
-    double error_left_m_ = 0.0;
-    double error_yaw_rad_ = 0.0;
-    double last_frame_s_ = 0.0;
-
-    std::vector<Path> coming_;
-    std::optional<Path> driven_;
-    double newest_s_ = -1.0;
-    bool has_begun_ = false;
-    bool is_stopping_ = false;
-    bool is_braking_ = false;
-    bool is_planner_ = false;  ///< whether answers have a state
+    bool is_planner_ = false;  ///< answers have a state
     int halted_steps_ = 0;
-
     std::vector<Point> path_before_;  ///< in the world
     int pairs_ = 0;
     int unsteady_ = 0;
@@ -526,61 +427,105 @@ class Run {
     RaceResult result_;
 };
 
-constexpr std::array kFaults{RaceFault::none,  RaceFault::jump,     RaceFault::late, RaceFault::twice,
-                             RaceFault::order, RaceFault::blackout, RaceFault::ids};
+/// One race in progress.
+class Run {
+  public:
+    Run(const RaceCourse& course, const RaceOptions& options, const Driver& driver)
+        : options_(options),
+          driver_(driver),
+          random_(generator_of(fmt::format("{}/{}/run", course.name, options.sight.false_positive_rate),
+                               options.sight.seed)),
+          car_{.vehicle = {start_pose(course, options, random_)},
+               .speed_mps = options.with_stop ? 0.0 : options.speed_mps},
+          sensor_(course, options, car_.vehicle.pose.position, random_),
+          transport_(options, random_),
+          referee_(course, options, car_.middle()) {}
+
+    RaceResult drive() {
+        int step = 0;
+        for (; !referee_.has_ended(step * kStep_s); ++step) {
+            if (step % kStepsPerFrame == 0)
+                transport_.send(sensor_.look(car_, referee_.lap_share(), step), step);
+            while (const std::optional<Frame> frame = transport_.next_frame(step)) answer(*frame, step);
+            while (std::optional<Answer> arrived = transport_.next_answer(step)) take(*std::move(arrived));
+            // While a frame is being answered, the path of the frame before it is the latest one.
+            const double old_s = sensor_.last_frame_s() - kFrame_s - 1e-9;
+            if (car_.path && car_.path->frame_s - car_.path->drive.age_s < old_s) referee_.note_old_path();
+            car_.drop_old_path(step * kStep_s);
+            const Point before = car_.middle();
+            car_.drive(options_, sensor_.map());
+            referee_.watch(before, car_);
+        }
+        return referee_.result(step * kStep_s, sensor_.false_positives());
+    }
+
+  private:
+    void answer(const Frame& frame, int step) {
+        const Stopwatch watch;
+        Drive drive = driver_(frame);
+        referee_.note_time(watch.elapsed_ms());
+        if (drive.is_refused) return referee_.note_refusal();
+        std::vector<Point> path;
+        if (drive.path.size() >= 2) {
+            drive.path = beginning(drive.path, 60.0);
+            path = sensor_.to_world(beginning(drive.path, 20.0));
+        }
+        referee_.note_answer(drive, path);
+        if (options_.keep_replay) {
+            std::vector<Point> seen;
+            for (const Cone& cone : frame.cones) seen.push_back(cone.position);
+            referee_.keep({.time_s = step * kStep_s,
+                           .pose = car_.vehicle.pose,
+                           .path = std::move(path),
+                           .seen = sensor_.to_world(std::move(seen)),
+                           .state = drive.state});
+        }
+        transport_.send(std::move(drive), frame.time_s, step);
+    }
+
+    /// An answer to an older frame is worth less than the path that is being driven.
+    void take(Answer answer) {
+        if (answer.frame_s < car_.newest_s) return;
+        if (answer.drive.stop) referee_.note_stop();
+        car_.take(std::move(answer));
+    }
+
+    const RaceOptions& options_;
+    const Driver& driver_;
+    Generator random_;
+    Car car_;
+    Sensor sensor_;
+    Transport transport_;
+    Referee referee_;
+};
+
+using Fault = std::pair<RaceFault, std::string_view>;
+constexpr std::array kFaults{Fault{RaceFault::none, "none"},   Fault{RaceFault::jump, "jump"},
+                             Fault{RaceFault::late, "late"},   Fault{RaceFault::twice, "twice"},
+                             Fault{RaceFault::order, "order"}, Fault{RaceFault::blackout, "blackout"},
+                             Fault{RaceFault::ids, "ids"}};
+constexpr std::array<std::string_view, 7> kEnds{"finished", "departed",     "stopped early", "not stopped",
+                                                "halted",   "wrong phases", "too long"};
 
 }  // namespace
 
 std::string_view to_string(RaceFault fault) {
-    switch (fault) {
-        case RaceFault::none:
-            return "none";
-        case RaceFault::jump:
-            return "jump";
-        case RaceFault::late:
-            return "late";
-        case RaceFault::twice:
-            return "twice";
-        case RaceFault::order:
-            return "order";
-        case RaceFault::blackout:
-            return "blackout";
-        case RaceFault::ids:
-            return "ids";
-    }
-    return "";
+    return kFaults[static_cast<std::size_t>(fault)].second;
 }
 
 RaceFault race_fault(std::string_view name) {
-    for (const RaceFault fault : kFaults) {
-        if (to_string(fault) == name) return fault;
-    }
+    const auto fault = std::ranges::find(kFaults, name, &Fault::second);
+    if (fault != kFaults.end()) return fault->first;
     throw InvalidInput(
         "--fault", "'" + std::string(name) + "' is not one of none, jump, late, twice, order, blackout, ids");
 }
 
 std::string_view to_string(RaceEnd end) {
-    switch (end) {
-        case RaceEnd::finished:
-            return "finished";
-        case RaceEnd::departed:
-            return "departed";
-        case RaceEnd::stopped_early:
-            return "stopped early";
-        case RaceEnd::not_stopped:
-            return "not stopped";
-        case RaceEnd::halted:
-            return "halted";
-        case RaceEnd::wrong_phases:
-            return "wrong phases";
-        case RaceEnd::too_long:
-            return "too long";
-    }
-    return "";
+    return kEnds[static_cast<std::size_t>(end)];
 }
 
 Driver truth_driver(const RaceCourse& course, int laps) {
-    return [&course, laps, at = Follower(course, course.start_m),
+    return [&course, laps, at = CourseFoot(course, course.start_m),
             finish_m = std::optional<double>{}](const Frame& frame) mutable {
         at.follow(frame.pose.position, 6.0);
         if (!finish_m) {

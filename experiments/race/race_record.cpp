@@ -1,13 +1,16 @@
 #include "experiments/race/race_record.hpp"
 
-#include "experiments/studies/text_table.hpp"
+#include "evaluation/scoring/statistics.hpp"
+#include "evaluation/scoring/text_table.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -15,72 +18,95 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::optional<double> quantile(std::vector<double> values, double share) {
-    if (values.empty()) return std::nullopt;
-    std::ranges::sort(values);
-    const double rank = share * static_cast<double>(values.size() - 1);
-    const auto low = static_cast<std::size_t>(rank);
-    const std::size_t high = std::min(low + 1, values.size() - 1);
-    return values[low] + (rank - static_cast<double>(low)) * (values[high] - values[low]);
+/// A method with a share of false positives.
+using Row = std::pair<std::string, double>;
+/// The same on a course.
+using Place = std::pair<std::string, Row>;
+
+Row row_of(const Heat& heat) {
+    return {heat.detector, heat.false_positive_rate};
 }
 
-/// The different keys, in the order in which they first occur.
-template <typename Key, typename Of>
-std::vector<Key> distinct(std::span<const Heat> heats, const Of& of) {
-    std::vector<Key> keys;
+/// The races of each key, in the order in which keys first occur.
+template <typename Of>
+auto grouped(std::span<const Heat> heats, const Of& of) {
+    using Results = std::vector<const RaceResult*>;
+    std::vector<std::pair<decltype(of(heats.front())), Results>> groups;
     for (const Heat& heat : heats) {
-        const Key key = of(heat);
-        if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+        const auto key = of(heat);
+        auto group = std::ranges::find_if(groups, [&](const auto& other) { return other.first == key; });
+        if (group == groups.end()) group = groups.insert(group, {key, {}});
+        group->second.push_back(&heat.result);
     }
-    return keys;
+    return groups;
 }
 
-struct Sums {
-    std::size_t races = 0;
-    std::size_t finished = 0;
-    std::size_t laps = 0;
-    std::size_t frames = 0;
-    std::size_t without = 0;
-    std::size_t wrong = 0;
-    double hit = 0.0;
-    double time_s = 0.0;
-    double old_s = 0.0;
-    std::vector<double> departures_m;
-    std::vector<double> errors_m;
-    double unsteady = 0.0;
-    std::size_t with_pairs = 0;
+/// The numbers of the races that have one.
+template <typename Number>
+Sample known(std::span<const RaceResult* const> results, const Number& number) {
+    Sample sample;
+    for (const RaceResult* result : results) sample.add(number(*result));
+    return sample;
+}
 
-    void add(const RaceResult& result) {
-        ++races;
-        finished += result.finished() ? 1 : 0;
-        laps += static_cast<std::size_t>(result.finished_laps);
-        frames += static_cast<std::size_t>(result.frames);
-        without += static_cast<std::size_t>(result.frames_without_path);
-        wrong += static_cast<std::size_t>(result.wrong_unflagged);
-        // The unfinished lap counts as one.
-        hit += result.cones_hit / static_cast<double>(std::max(1, result.finished_laps + !result.finished()));
-        time_s += result.time_s;
-        old_s += result.old_path_s;
-        if (result.departure_m) departures_m.push_back(*result.departure_m);
-        if (result.lateral_error_p95_m) errors_m.push_back(*result.lateral_error_p95_m);
-        if (result.unsteady_share) {
-            unsteady += *result.unsteady_share;
-            ++with_pairs;
-        }
-    }
-};
+template <typename Number>
+double sum(std::span<const RaceResult* const> results, const Number& number) {
+    double total = 0.0;
+    for (const RaceResult* result : results) total += number(*result);
+    return total;
+}
+
+/// The unfinished lap counts as one.
+double hit_a_lap(const RaceResult& result) {
+    return result.cones_hit / static_cast<double>(std::max(1, result.finished_laps + !result.finished()));
+}
 
 Json maybe(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
 }
 
+double rounded(double value, double steps) {
+    return std::round(value * steps) / steps;
+}
+
 Json flat(const std::vector<Point>& points) {
     Json list = Json::array();
     for (const Point& point : points) {
-        list.push_back(std::round(point.x() * 100.0) / 100.0);
-        list.push_back(std::round(point.y() * 100.0) / 100.0);
+        for (const double m : {point.x(), point.y()}) list.push_back(rounded(m, 100.0));
     }
     return list;
+}
+
+/// How far the unfinished races went; empty if there is none.
+std::string lost_table(std::span<const Heat> heats) {
+    TextTable table(
+        {{"course", true}, {"method", true}, {"fp"}, {"not finished"}, {"m driven, median"}, {"how", true}});
+    bool any = false;
+    for (const auto& [place, races] :
+         grouped(heats, [](const Heat& heat) { return Place(heat.course, row_of(heat)); })) {
+        std::vector<double> driven_m;
+        std::vector<std::string_view> how;
+        for (const RaceResult* race : races) {
+            if (race->finished()) continue;
+            driven_m.push_back(race->driven_m);
+            if (std::ranges::find(how, to_string(race->end)) == how.end())
+                how.push_back(to_string(race->end));
+        }
+        if (driven_m.empty()) continue;
+        any = true;
+        table.add({place.first, place.second.first, fmt::format("{}", place.second.second),
+                   fmt::format("{} of {}", driven_m.size(), races.size()), fixed(median(driven_m), 0),
+                   fmt::format("{}", fmt::join(how, ", "))});
+    }
+    return any ? table.text() : "";
+}
+
+/// The race, without its result.
+Json identity(const Heat& heat) {
+    return {{"track", heat.course},
+            {"method", heat.detector},
+            {"false_positive_rate", heat.false_positive_rate},
+            {"seed", heat.seed}};
 }
 
 }  // namespace
@@ -98,91 +124,65 @@ std::string race_table(std::span<const Heat> heats, int laps) {
                      {"old path %"},
                      {"unsteady %"},
                      {"wrong path %"}});
-    using Row = std::pair<std::string, double>;
-    for (const Row& row : distinct<Row>(
-             heats, [](const Heat& heat) { return Row(heat.detector, heat.false_positive_rate); })) {
-        Sums sums;
-        for (const Heat& heat : heats) {
-            if (Row(heat.detector, heat.false_positive_rate) == row) sums.add(heat.result);
-        }
-        const auto count = static_cast<double>(sums.races);
-        table.add(
-            {row.first, fmt::format("{}", row.second), std::to_string(sums.races),
-             percent(share(sums.finished, sums.races), 1),
-             percent(share(sums.laps, sums.races * static_cast<std::size_t>(laps)), 1),
-             fixed(quantile(sums.departures_m, 0.5), 0), fixed(sums.hit / count, 2),
-             fixed(quantile(sums.errors_m, 0.5), 2), percent(share(sums.without, sums.frames), 2),
-             sums.time_s > 0.0 ? percent(sums.old_s / sums.time_s, 2) : "-",
-             sums.with_pairs == 0 ? "-" : percent(sums.unsteady / static_cast<double>(sums.with_pairs), 1),
-             percent(share(sums.wrong, sums.frames), 2)});
+    for (const auto& [row, races] : grouped(heats, row_of)) {
+        const auto total = [&](int RaceResult::*number) {
+            return static_cast<std::size_t>(sum(races, [&](const RaceResult& r) { return r.*number; }));
+        };
+        const auto half = [&](std::optional<double> RaceResult::*number) {
+            return known(races, [&](const RaceResult& r) { return r.*number; }).median();
+        };
+        const double time_s = sum(races, [](const RaceResult& r) { return r.time_s; });
+        const double old_s = sum(races, [](const RaceResult& r) { return r.old_path_s; });
+        const auto finished = sum(races, [](const RaceResult& r) { return r.finished() ? 1 : 0; });
+        const auto count = static_cast<double>(races.size());
+        const std::size_t frames = total(&RaceResult::frames);
+        const std::size_t laps_wanted = races.size() * static_cast<std::size_t>(laps);
+        table.add({row.first, fmt::format("{}", row.second), std::to_string(races.size()),
+                   percent(share(static_cast<std::size_t>(finished), races.size()), 1),
+                   percent(share(total(&RaceResult::finished_laps), laps_wanted), 1),
+                   fixed(half(&RaceResult::departure_m), 0), fixed(sum(races, hit_a_lap) / count, 2),
+                   fixed(half(&RaceResult::lateral_error_p95_m), 2),
+                   percent(share(total(&RaceResult::frames_without_path), frames), 2),
+                   time_s > 0.0 ? percent(old_s / time_s, 2) : "-",
+                   percent(known(races, [](const RaceResult& r) { return r.unsteady_share; }).mean(), 1),
+                   percent(share(total(&RaceResult::wrong_unflagged), frames), 2)});
     }
-    std::string text = table.text();
-    TextTable lost(
-        {{"course", true}, {"method", true}, {"fp"}, {"not finished"}, {"m driven, median"}, {"how", true}});
-    bool any = false;
-    using Place = std::pair<std::string, Row>;
-    for (const Place& place : distinct<Place>(heats, [](const Heat& heat) {
-             return Place(heat.course, Row(heat.detector, heat.false_positive_rate));
-         })) {
-        std::size_t races = 0;
-        std::vector<double> driven_m;
-        std::vector<std::string> how;
-        for (const Heat& heat : heats) {
-            if (Place(heat.course, Row(heat.detector, heat.false_positive_rate)) != place) continue;
-            ++races;
-            if (heat.result.finished()) continue;
-            driven_m.push_back(heat.result.driven_m);
-            const std::string word(to_string(heat.result.end));
-            if (std::ranges::find(how, word) == how.end()) how.push_back(word);
-        }
-        if (driven_m.empty()) continue;
-        any = true;
-        std::string words;
-        for (const std::string& word : how) words += (words.empty() ? "" : ", ") + word;
-        lost.add({place.first, place.second.first, fmt::format("{}", place.second.second),
-                  fmt::format("{} of {}", driven_m.size(), races), fixed(quantile(driven_m, 0.5), 0), words});
-    }
-    if (any) text += "\n" + lost.text();
-    return text;
+    const std::string lost = lost_table(heats);
+    return table.text() + (lost.empty() ? "" : "\n" + lost);
 }
 
 std::string answer_time_table(std::span<const Heat> heats) {
     TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
-    for (const std::string& detector :
-         distinct<std::string>(heats, [](const Heat& heat) { return heat.detector; })) {
-        std::vector<double> times_ms;
-        for (const Heat& heat : heats) {
-            if (heat.detector != detector) continue;
-            times_ms.insert(times_ms.end(), heat.result.answer_ms.begin(), heat.result.answer_ms.end());
+    for (const auto& [detector, races] : grouped(heats, [](const Heat& heat) { return heat.detector; })) {
+        Sample times_ms;
+        for (const RaceResult* race : races) {
+            for (const double answer_ms : race->answer_ms) times_ms.add(answer_ms);
         }
-        table.add({detector, fixed(quantile(times_ms, 0.5), 3), fixed(quantile(times_ms, 0.99), 3)});
+        table.add({detector, fixed(times_ms.median(), 3), fixed(times_ms.quantile(0.99), 3)});
     }
     return table.text();
 }
 
 Json heat_json(const Heat& heat) {
     const RaceResult& r = heat.result;
-    Json json{{"track", heat.course},
-              {"method", heat.detector},
-              {"false_positive_rate", heat.false_positive_rate},
-              {"seed", heat.seed},
-              {"finished", r.finished()},
-              {"end", to_string(r.end)},
-              {"finished_laps", r.finished_laps},
-              {"driven_m", r.driven_m},
-              {"departure_m", maybe(r.departure_m)},
-              {"stop_said_m", maybe(r.stop_said_m)},
-              {"rest_m", maybe(r.rest_m)},
-              {"cones_hit", r.cones_hit},
-              {"lateral_error_p95_m", maybe(r.lateral_error_p95_m)},
-              {"frames", r.frames},
-              {"frames_without_path", r.frames_without_path},
-              {"frames_refused", r.frames_refused},
-              {"wrong_unflagged", r.wrong_unflagged},
-              {"time_s", r.time_s},
-              {"old_path_s", r.old_path_s},
-              {"unsteady_share", maybe(r.unsteady_share)},
-              {"laps_told", r.laps_told}};
+    Json json = identity(heat);
+    json.update({{"finished", r.finished()},
+                 {"end", to_string(r.end)},
+                 {"finished_laps", r.finished_laps},
+                 {"driven_m", r.driven_m},
+                 {"departure_m", maybe(r.departure_m)},
+                 {"stop_said_m", maybe(r.stop_said_m)},
+                 {"rest_m", maybe(r.rest_m)},
+                 {"cones_hit", r.cones_hit},
+                 {"lateral_error_p95_m", maybe(r.lateral_error_p95_m)},
+                 {"frames", r.frames},
+                 {"frames_without_path", r.frames_without_path},
+                 {"frames_refused", r.frames_refused},
+                 {"wrong_unflagged", r.wrong_unflagged},
+                 {"time_s", r.time_s},
+                 {"old_path_s", r.old_path_s},
+                 {"unsteady_share", maybe(r.unsteady_share)},
+                 {"laps_told", r.laps_told}});
     if (!r.phases.empty()) json["phases"] = r.phases;
     return json;
 }
@@ -199,24 +199,22 @@ Json replay_json(const Heat& heat, const RaceCourse& course) {
     }
     Json frames = Json::array();
     for (const ReplayFrame& frame : heat.result.replay) {
-        frames.push_back({{"t", std::round(frame.time_s * 100.0) / 100.0},
-                          {"x", std::round(frame.pose.position.x() * 100.0) / 100.0},
-                          {"y", std::round(frame.pose.position.y() * 100.0) / 100.0},
-                          {"yaw", std::round(frame.pose.yaw_rad * 1000.0) / 1000.0},
+        frames.push_back({{"t", rounded(frame.time_s, 100.0)},
+                          {"x", rounded(frame.pose.position.x(), 100.0)},
+                          {"y", rounded(frame.pose.position.y(), 100.0)},
+                          {"yaw", rounded(frame.pose.yaw_rad, 1000.0)},
                           {"state", frame.state},
                           {"path", flat(frame.path)},
                           {"seen", flat(frame.seen)}});
     }
-    return {{"track", heat.course},
-            {"method", heat.detector},
-            {"false_positive_rate", heat.false_positive_rate},
-            {"seed", heat.seed},
-            {"end", to_string(heat.result.end)},
-            {"left", flat(left)},
-            {"right", flat(right)},
-            {"other", flat(other)},
-            {"false_positives", flat(heat.result.false_positives)},
-            {"frames", std::move(frames)}};
+    Json json = identity(heat);
+    json.update({{"end", to_string(heat.result.end)},
+                 {"left", flat(left)},
+                 {"right", flat(right)},
+                 {"other", flat(other)},
+                 {"false_positives", flat(heat.result.false_positives)},
+                 {"frames", std::move(frames)}});
+    return json;
 }
 
 }  // namespace conelane::experiments

@@ -7,7 +7,7 @@ import numpy as np
 
 from .measures import REAL_TIME_BUDGET_MS
 from .summaries import median, percent_label, quantile
-from .theme import (ACCENT, INK, MARKERS, MUTED, SURFACE, legend, logarithmic, method_color, method_style, new_figure, series_style,
+from .theme import (ACCENT, INK, MARKERS, MUTED, SURFACE, legend, logarithmic, method_color, method_style, new_figure, pyplot, series_style,
                     svg_of)
 
 THIN = {"linewidth": 0.8, "markersize": 2.5, "alpha": 0.75}
@@ -142,24 +142,14 @@ def drawn(name, caption, figure, title="", condition=""):
             f'{escape(caption)}">{svg_of(figure[0], name)}</div><figcaption>{escape(caption)}</figcaption></figure>')
 
 
-# The markers of theme.MARKERS as paths in a box from -5 to 5.
-_MARKER_PATHS = {"o": "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0Z", "s": "M-4-4h8v8h-8Z", "D": "M0-5L5 0L0 5L-5 0Z",
-                 "^": "M0-5L5 4H-5Z", "v": "M0 5L5-4H-5Z", "P": "M-1.6-5h3.2v3.4H5v3.2H1.6V5h-3.2V1.6H-5v-3.2h3.4Z",
-                 "X": "M-5-3L-3-5L0-2L3-5L5-3L2 0L5 3L3 5L0 2L-3 5L-5 3L-2 0Z",
-                 "*": "M0-5L1.2-1.6H4.8L1.9.6L3 4L0 1.9L-3 4L-1.9.6L-4.8-1.6H-1.2Z"}
-
-
-def method_key(results, samples):
+def method_key(results, samples, name):
     """The legend of the methods' curves, once for all figures below it."""
     entries = []
-    for sample, variant in variants(samples):
-        style = method_style(results.methods, sample.method, variant)
-        color = style["color"].partition(":")[2]
-        dash = style["linestyle"]
-        dashes = "" if dash == "-" else f' stroke-dasharray="{" ".join(f"{2 * part:g}" for part in dash[1])}"'
-        entries.append(f'<span class="key"><svg viewBox="-15 -6 30 12" aria-hidden="true"><path d="M-15 0H15" '
-                       f'stroke="var(--{color})" stroke-width="2"{dashes}/><path d="{_MARKER_PATHS[style["marker"]]}" '
-                       f'fill="var(--{color})"/></svg>{escape(sample.label)}</span>')
+    for number, (sample, variant) in enumerate(variants(samples)):
+        style = method_style(results.methods, sample.method, variant) | {"gid": None, "markevery": [1]}
+        figure = pyplot.figure(figsize=(0.42, 0.17))
+        figure.add_artist(pyplot.Line2D([0, 0.5, 1], [0.5, 0.5, 0.5], **style))
+        entries.append(f'<span class="key">{svg_of(figure, f"{name}-key-{number}").strip()}{escape(sample.label)}</span>')
     return f'<p class="method-key">{" ".join(entries)}</p>'
 
 

@@ -4,7 +4,7 @@ cmake_minimum_required(VERSION 3.22...3.25)
 
 get_filename_component(package ${FOLDER} NAME)
 get_filename_component(parent ${FOLDER} DIRECTORY)
-file(GLOB_RECURSE sources RELATIVE ${parent} ${FOLDER}/*.py ${FOLDER}/*.js ${FOLDER}/*.css ${FOLDER}/*.json)
+file(GLOB_RECURSE sources RELATIVE ${parent} ${FOLDER}/*.py ${FOLDER}/*.js ${FOLDER}/*.mjs ${FOLDER}/*.css ${FOLDER}/*.json)
 list(SORT sources)
 execute_process(COMMAND ${CMAKE_COMMAND} -E env TZ=UTC ${CMAKE_COMMAND} -E tar cf ${ARCHIVE} --format=zip
                         "--mtime=2000-01-01 00:00:00" -- ${sources}
@@ -14,7 +14,7 @@ string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
 string(REGEX REPLACE "(................................................................................)" "\\1\n"
                      bytes "${bytes}")
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-#include "experiments/report/archive.hpp"
+#include "experiments/report/package.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -65,12 +65,10 @@ def _judged(verdict):
     return f'<p class="judged">{" ".join(pieces)}</p>'
 
 
-def blocks(experiments, results, published, absent, advance=lambda: None):
-    """The experiments in order. What the results do not hold is added to `absent`, with the command that makes it.
-    `advance` is called before each."""
+def blocks(experiments, results, published, absent):
+    """The experiments in order. What the results do not hold is added to `absent`, with the command that makes it."""
     present = []
     for experiment in experiments:
-        advance()
         try:
             present.append(experiment.html(results, published))
         except Missing as missing:

@@ -13,7 +13,7 @@ CAUSE_WORDS = list(CAUSES.values())
 
 
 def drawing(scene, slot, said, zoom=False):
-    """A place for one scene with the lane of one method, which drawing.js fills; with `zoom` around the usable lanes of all."""
+    """A place for one scene with the lane of one method, which frames.js fills; with `zoom` around the usable lanes of all."""
     return (f'<div role="img" aria-label="{escape(said)}"><canvas data-scene="{escape(scene)}" data-slot="{slot}"'
             f'{" data-zoom=all" if zoom else ""}></canvas></div>')
 

@@ -6,11 +6,10 @@ from html import escape
 import numpy as np
 
 from . import gallery, measures
-from .conditions import short
 from .experiments.exactness import Compared, read_optimality
 from .load import Missing
 from .measures import REAL_TIME_BUDGET_MS, headline_measure, leaders_of, share_and_interval
-from .methods import CLC_PAPER, RLD_PAPER, described
+from .methods import CLC_PAPER, RLD_PAPER, described, short
 from .rows import note_on_limit, note_on_training, scenes_cell
 from .summaries import percent_label, quantile
 from .tables import Column, column, method_column, milliseconds, percent, table
@@ -42,7 +41,7 @@ def _recommended(results, samples):
                   f"{quantile(best.latency, 0.99):.2f}{_NBSP}ms.{tail}")
 
 
-def _sentence(results):
+def answer(results):
     """The method whose lanes are usable most often. If it does not keep the real-time budget, also the best that does;
     if it carries its last lane along, also the best of those that do not: false positives drawn at every pose
     reward memory more than a track would."""
@@ -66,25 +65,18 @@ def _sentence(results):
 
 def _agreement_sentences(results):
     """Whether methods that proved optimality of one objective on the same cone sets found the same optimum."""
-    tolerance = 1e-6
     groups = {}
     for sample in results.samples:
         if sample.has("objective"):
             groups.setdefault((sample.nearest, results.objective_of(sample)), []).append(sample)
     pieces = []
     for samples in groups.values():
-        proven = [{scene: value for scene, value, optimal in zip(s.scene, s.objective, s.optimal) if optimal == 1.0}
-                  for s in samples]
-        scenes = [scene for scene in dict.fromkeys(scene for values in proven for scene in values)
-                  if sum(scene in values for values in proven) > 1]
-        if not scenes:
-            continue
-        apart = sum(max(found) - min(found) > tolerance for found in
-                    ([values[scene] for values in proven if scene in values] for scene in scenes))
-        names = _joined([escape(s.label) for s in samples])
-        pieces.append(f"<li>{names} minimise one objective and find the same optimum within 10<sup>−6</sup> in "
-                      f"{len(scenes) - apart} of {len(scenes)} scenes that more than one of them solved to proven "
-                      "optimality.</li>")
+        apart, shared = measures.disagreements([{scene: value for scene, value, optimal in zip(s.scene, s.objective, s.optimal) if optimal == 1.0}
+                                                for s in samples])
+        if shared:
+            pieces.append(f"<li>{_joined([escape(s.label) for s in samples])} minimise one objective and find the same optimum within "
+                          f"10<sup>−6</sup> in {shared - apart} of {shared} scenes that more than one of them solved to proven "
+                          "optimality.</li>")
     return "".join(pieces)
 
 
@@ -155,16 +147,12 @@ def _summary(results, conditions):
         scenes = max(len(sample.at(condition=condition)) for sample in results.samples)
         return ", ".join(filter(None, (short(conditions, condition), f"n\u00a0=\u00a0{scenes}")))
 
-    def rank(sample):
-        usable = share_and_interval(sample, "usable")[0]
-        return usable if usable is not None else float(sample.success.mean())
-
     def in_condition(condition):
         return column(f"in {condition or 'none named'} %", percent,
                       lambda sample: share_and_interval(sample.at(condition=condition), "usable")[0], hint=hint(condition))
     of_conditions = list(map(in_condition, results.conditions)) if len(results.conditions) > 1 else []
     return table("headline", _columns(results, _ahead(results, results.samples), of_conditions),
-                 sorted(results.samples, key=rank, reverse=True), attributes=lambda sample: {"method": sample.label},
+                 results.samples, attributes=lambda sample: {"method": sample.label},
                  note=f"All conditions, rates and ranges together. {_NOTE}{note_on_limit(results)}{note_on_training(results)}")
 
 
@@ -223,11 +211,6 @@ def exactness(results):
     """Sentences on proofs: what was proven, checked, and how near the graph search comes to it."""
     sentences = f"{_agreement_sentences(results)}{_optimality_sentence(results)}{_checker_sentence(results)}"
     return f'<ul class="verdict">{sentences}</ul>' if sentences else ""
-
-
-def answer(results):
-    """The answer to what is compared, in a sentence or two."""
-    return _sentence(results)
 
 
 def html(results, data, conditions):

@@ -274,11 +274,9 @@ def _check_same_run(path, rows, samples):
                 raise InputError(f"{path}: {key} of {row_name(row)} is {mean}, results.jsonl has {stored}")
 
 
-def _best_first(samples):
-    """Labels by their share of usable lanes, of success where that is unknown; equal ones as they come."""
-    def share(sample):
-        return float(np.nanmean(sample.usable)) if sample.has("usable") else float(sample.success.mean())
-    return [sample.label for sample in sorted(samples, key=lambda sample: -share(sample))]
+def _share(sample):
+    """Of usable lanes, of success where that is unknown."""
+    return float(np.nanmean(sample.usable)) if sample.has("usable") else float(sample.success.mean())
 
 
 def _read_beside(path):
@@ -306,7 +304,8 @@ def load_results(directory):
     samples = _read_samples(path("scores.jsonl"))
     _check_same_run(path("scores.jsonl"), rows, samples)
     order = list(dict.fromkeys(label_of(row["method"], row.get("nearest")) for row in rows))
-    samples = sorted((s for s in samples if s.label in order), key=lambda sample: order.index(sample.label))
+    # The best first in tables, legends and pictures; colours are by the order in the file.
+    samples = sorted((s for s in samples if s.label in order), key=lambda sample: (-_share(sample), order.index(sample.label)))
     beside = {folder: _read_beside(path(os.path.join(folder, "scores.jsonl"))) for folder in BESIDE}
     methods = list(dict.fromkeys([row["method"] for row in rows] +
                                  [sample.method for samples in beside.values() for sample in samples]))
@@ -316,7 +315,6 @@ def load_results(directory):
     tracks = read_json(tracks_file) if os.path.exists(tracks_file) else {}
     runs_beside = [read_json(path(os.path.join(folder, "run.json"))) for folder in BESIDE
                    if os.path.exists(path(os.path.join(folder, "run.json")))]
-    order = _best_first(samples)  # of tables, legends and pictures; colours stay those of the order in the file
-    rows.sort(key=lambda row: order.index(label_of(row["method"], row.get("nearest"))))
-    samples.sort(key=lambda sample: order.index(sample.label))
+    labels = [sample.label for sample in samples]
+    rows.sort(key=lambda row: labels.index(label_of(row["method"], row.get("nearest"))))
     return Results(directory, run, rows, samples, beside, tracks, methods, runs_beside)

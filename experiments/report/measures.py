@@ -10,6 +10,7 @@ from .summaries import quantile
 REAL_TIME_BUDGET_MS = 50.0
 CONFIDENCE = 0.95
 RESAMPLES = 2000
+AGREEMENT = 1e-6  # of optima that are the same
 GEOMETRIC_MEAN_SHIFT_MS = 1.0
 SMALLEST_MS = 1e-6  # a clock's tick keeps logarithms finite
 
@@ -100,6 +101,15 @@ def performance_profiles(times):
     ratios = np.full(times.shape, np.inf)
     np.divide(times, best, out=ratios, where=solvable & np.isfinite(times))
     return np.sort(ratios, axis=0)
+
+
+def disagreements(proven):
+    """Of optima that several prove, by scene (infinite: there is no lane graph): how many differ, of how many that two of them prove."""
+    found = {}
+    for scene, value in (item for of_one in proven for item in of_one.items()):
+        found.setdefault(scene, []).append(value)
+    shared = [values for values in found.values() if len(values) > 1]
+    return sum(not (max(values) == min(values) or max(values) - min(values) <= AGREEMENT) for values in shared), len(shared)
 
 
 def headline_measure(samples):

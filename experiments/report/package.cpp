@@ -1,9 +1,7 @@
 #include "experiments/report/package.hpp"
 
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/output_stream.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/report/archive.hpp"
 
 #include <cerrno>
 #include <csignal>

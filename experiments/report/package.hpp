@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -45,6 +46,9 @@ class PackageRefused : public std::runtime_error {
 /// failures.
 void run_package(const std::string& module, const std::vector<std::string>& arguments,
                  const std::string& wished_python);
+
+/// The Python package `report` of this folder as a zip archive that Python can import.
+[[nodiscard]] std::span<const unsigned char> report_archive();
 
 struct MadeFile {
     std::filesystem::path file;

@@ -4,15 +4,13 @@ import json
 import pkgutil
 from html import escape
 
-from . import experiments, filters, gallery, headline, provenance
+from . import experiments, gallery, headline, provenance
 from .experiment import blocks
 from .load import CATEGORIES
-from .progress import Progress
+from .methods import whole
 from .scenes import read_scenes
+from .summaries import percent_label
 from .theme import METHOD_COLORS
-
-_EXPERIMENTS = (experiments.COMPARISON, experiments.RACE, experiments.FAILURES, experiments.SPEED, experiments.EXACTNESS,
-                experiments.RLD_PAPER, experiments.CLC_PAPER)
 
 _VIEWER = """
 <div id="viewer" tabindex="0" aria-label="Scene viewer">
@@ -98,49 +96,69 @@ def _one_condition(results):
             "do.</p>")
 
 
-def _sections(results, published, data, advance):
-    """(id, short title, title, content) of each; those of which the results hold nothing are left out."""
-    main, note, absent = results.under(results.main_condition), _one_condition(results), []
+def _explained(results, conditions):
+    """What the conditions are, beside the choice of one."""
+    told = [f"<b>{escape(name)}</b>: {escape(whole(conditions, name))}." for name in results.conditions
+            if whole(conditions, name)]
+    return f'<p class="note conditions">{" ".join(told)}</p>' if told else ""
+
+
+def _filters(results, conditions):
+    """The choices above the comparison. They hide rows of the tables, curves of the charts, and charts and pictures of other conditions."""
+    def choice(key, title, values, show):
+        if len(values) < 2:
+            return ""
+        options = "".join(f'<option value="{escape(str(value))}">{escape(show(value))}</option>' for value in values)
+        return f'<label>{title} <select data-filter="{key}"><option value="">all</option>{options}</select></label>'
+
+    everywhere = [choice("condition", "Condition", results.conditions, lambda name: name or "none named"),
+                  choice("method", "Method", [sample.label for sample in results.samples], str)]
+    in_tables = [choice("rate", "False positives", results.rates, lambda rate: f"{percent_label(rate)} %"),
+                 choice("range", "Range", results.ranges, lambda value: f"{value:g} m")]
+    groups = [("Show in tables, charts and pictures", everywhere), ("in tables", in_tables)]
+    return '<div class="controls" id="filters">' + "".join(
+        f"<span>{words}:</span>{''.join(choices)}" for words, choices in groups if any(choices)) + "</div>" + _explained(results, conditions)
+
+
+def _sections(results, published, data):
+    """(id, short title, title, content) of each; those of which the results hold nothing are left out. Without a comparison there are
+    studies of solvers alone."""
+    absent, conditions = [], published["conditions"]
 
     def shown(modules, of=results):
-        return blocks(modules, of, published, absent, advance)
+        return blocks(modules, of, published, absent)
 
     def alone(modules):
         content = shown(modules, main)
         return note + content if content else ""
 
-    sections = [
-        ("verdict", "Headline", "The methods, best first", headline.html(results, data, published["conditions"])),
-        ("comparison", "Comparison", "Comparison",
-         filters.html(results, published["conditions"]) + shown(experiments.COMPARISON)
-         + headline.by_rate(results, published["conditions"])),
-        ("race", "Race", "Races driven with the answers", shown(experiments.RACE)),
-        ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
-        ("play", "Viewer", "Scene viewer", _viewer(results, data)),
-        ("speed", "Speed", "Speed on the same cones", alone(experiments.SPEED)),
-        ("exactness", "Exactness", "The benefit of exact solvers", headline.exactness(results) + shown(experiments.EXACTNESS)),
-        ("rld", "RLD paper", "Compared with the RLD paper", alone(experiments.RLD_PAPER)),
-        ("clc", "CLC paper", "Compared with the CLC paper", alone(experiments.CLC_PAPER))]
+    def exactness():
+        return ("exactness", "Exactness", "The benefit of exact solvers", headline.exactness(results) + shown(experiments.EXACTNESS))
+    if data:
+        main, note = results.under(results.main_condition), _one_condition(results)
+        sections = [
+            ("verdict", "Headline", "The methods, best first", headline.html(results, data, conditions)),
+            ("comparison", "Comparison", "Comparison", _filters(results, conditions) + shown(experiments.COMPARISON)
+             + headline.by_rate(results, conditions)),
+            ("race", "Race", "Races driven with the answers", shown(experiments.RACE)),
+            ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
+            ("play", "Viewer", "Scene viewer", _viewer(results, data)),
+            ("speed", "Speed", "Speed on the same cones", alone(experiments.SPEED)), exactness(),
+            ("rld", "RLD paper", "Compared with the RLD paper", alone(experiments.RLD_PAPER)),
+            ("clc", "CLC paper", "Compared with the CLC paper", alone(experiments.CLC_PAPER))]
+        run = provenance.html(results, data, conditions)
+    else:
+        sections, run = [exactness()], f"<h3>Run</h3>{provenance.listed(results.run)}"
     missing = f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else ""
-    sections.append(("protocol", "Protocol", "Protocol and provenance",
-                     provenance.html(results, data, published["conditions"]) + missing))
-    return [section for section in sections if section[3]]
-
-
-def _sections_of_studies(results, published, advance):
-    """Where there is no comparison."""
-    absent = []
-    exactness = headline.exactness(results) + blocks(experiments.EXACTNESS, results, published, absent, advance)
-    missing = f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else ""
-    return [("exactness", "Exactness", "The benefit of exact solvers", exactness),
-            ("protocol", "Protocol", "Protocol and provenance", f"<h3>Run</h3>{provenance.listed(results.run)}{missing}")]
+    return [section for section in [*sections, ("protocol", "Protocol", "Protocol and provenance", run + missing)] if section[3]]
 
 
 def _intro(results, data):
-    if not results.samples:
+    commit = f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>."
+    if not data:
         return ('<div><h1>Solvers of cone lanes, compared</h1><p class="lead">Studies of solvers, without a comparison of methods. '
-                f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.</p></div>")
-    return (f'<div><h1>Lanes between cones, compared</h1>\n<p class="lead">{_lead(results)}</p>'
+                f"{commit}</p></div>")
+    return (f'<div><h1>Lanes between cones, compared</h1>\n<p class="lead">{_lead(results)} {commit}</p>'
             f"{headline.answer(results)}</div>{headline.picture(results, data)}")
 
 
@@ -156,19 +174,14 @@ def _lead(results):
             '<b class="left-key">left</b> and the one on its <b class="right-key">right</b> between which the course goes on. '
             '</p><p class="lead">Compared: '
             f"{len(results.samples)} methods on the same {scenes} scenes of {tracks} track{'s' if tracks > 1 else ''}, scored by "
-            f"the same code; the figures of the papers are shown beside them.{how} "
-            f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
+            f"the same code; the figures of the papers are shown beside them.{how}")
 
 
 def render(results, published, tracks=()):
     """The whole page as text; the same results give the same bytes. `tracks`: see read_scenes."""
-    progress = Progress("page", sum(map(len, _EXPERIMENTS)))
-    if results.samples:
-        data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"], published["usual_width_m"])
-        sections = _sections(results, published, data, progress.advance)
-    else:
-        data, sections = None, _sections_of_studies(results, published, progress.advance)
-    progress.end()
+    data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"],
+                       published["usual_width_m"]) if results.samples else None
+    sections = _sections(results, published, data)
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
                    for name, _, title, content in sections)
@@ -181,6 +194,7 @@ def render(results, published, tracks=()):
 <main><div class="intro">{_intro(results, data)}</div>
 {body}</main>
 <script type="application/json" id="marks">{_asset("marks.json")}</script>
-{"".join(f"<script>{_asset(name)}</script>" for name in ("tables.js", "drawing.js", "viewer.js", "race.js"))}
+<script>{_asset("tables.js")}</script>
+<script type="module">{_asset("drawing.mjs").replace("export ", "")}{"".join(map(_asset, ("frames.js", "viewer.js", "race.js")))}</script>
 </body></html>
 """

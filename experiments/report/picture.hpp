@@ -3,7 +3,7 @@
 #include "conelane/drivable_lane.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "evaluation/world/track.hpp"
 
 #include <filesystem>
 #include <string>

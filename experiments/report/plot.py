@@ -16,7 +16,7 @@ from .records import InputError, label_of, read_json, read_lines
 from .scenes import boundary_points, frame_of, in_car_frame, sides_of
 from .theme import METHOD_COLORS, SURFACE, picture_colors, pyplot
 
-# How each part of a drawing is marked, here and in drawing.js: sizes, widths and dashes in pixels of the viewer, colours
+# How each part of a drawing is marked, here and in drawing.mjs: sizes, widths and dashes in pixels of the viewer, colours
 # as names of style.css.
 MARKS = json.loads(pkgutil.get_data(__package__, "marks.json"))
 _POINTS = 0.75  # of a pixel
@@ -86,7 +86,7 @@ class _Panel:
                                    fontsize=7, color=_color("muted"), annotation_clip=False)
 
     def car(self):
-        outline = np.array(MARKS["car"]["outline"], dtype=float) * (1, -1)
+        outline = _up(MARKS["car"]["outline"])
         span = np.abs(outline).max()
         self.axes.plot(0, 0, marker=np.vstack([outline, outline[:1]]), markersize=2 * _POINTS * span, linestyle="",
                        color=_color(MARKS["car"]["color"]), markeredgewidth=0, zorder=5)

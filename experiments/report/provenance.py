@@ -2,7 +2,7 @@
 
 from html import escape
 
-from .conditions import whole
+from .methods import whole
 from .records import label_of
 from .measures import RESAMPLES
 

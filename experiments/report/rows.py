@@ -1,7 +1,7 @@
 """What the tables with a row per method, condition, rate and range share."""
 
 from .records import label_of
-from .tables import Cell, Column, column, method_cell, percent, text
+from .tables import Cell, Column, column, method_cell, percent, table, text
 
 CATEGORY_NOTE = ("Ground truth: exactly the same cones. Near: does not diverge and is long enough, but has other "
                  "cones. Too short: does not diverge, but is below 75 % of the ground truth's length.")
@@ -43,9 +43,10 @@ def keys(results):
             Column("scenes", lambda row: scenes_cell(row["scenes"], row.get("trained_on", 0)))]
 
 
-def attributes(row):
-    """What the filters of the page go by."""
-    return {"method": label(row), "condition": row.get("condition", ""), "rate": row["false_positive_rate"], "range": row["range"]}
+def rows_table(name, results, columns, note=""):
+    """A table of the rows of results.jsonl, with what the filters of the page go by."""
+    return table(name, keys(results) + columns, results.rows, note=note, attributes=lambda row: {
+        "method": label(row), "condition": row.get("condition", ""), "rate": row["false_positive_rate"], "range": row["range"]})
 
 
 def part(results, row):

@@ -5,14 +5,13 @@ import glob
 import json
 import math
 import os
-import re
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from .load import CATEGORIES, CAUSES
 from .measures import headline_measure
-from .records import NUMBER, TEXT, InputError, label_of, read_lines, require
+from .records import NUMBER, TEXT, InputError, label_of, read_lines, require, require_all
 
 MOST_BYTES = 9_000_000  # of all frames as JSON
 _BYTES_PER_CONE = 10
@@ -48,25 +47,12 @@ def gallery_rate(results):
     return min(results.rates, key=lambda rate: (abs(rate - GALLERY_RATE), rate))
 
 
-_POSE_AT_START = re.compile(r'\{"id":"([^"\\]*)","pose":\{"x":([-+.\deE]+),"y":([-+.\deE]+),')
-
-
-def _poses(scenes_file):
-    """Where the car stands in each scene. Lines are long, and their beginning says it."""
-    places = {}
-    try:
-        with open(scenes_file, encoding="utf-8") as stream:
-            for number, line in enumerate(stream, 1):
-                start = _POSE_AT_START.match(line)
-                if start:
-                    places[start[1]] = (float(start[2]), float(start[3]))
-                elif line.strip():
-                    scene = json.loads(line)
-                    places[scene.get("id", str(number))] = (float(scene["pose"]["x"]), float(scene["pose"]["y"]))
-    except OSError as error:
-        raise InputError(f"{scenes_file}: {error.strerror}") from None
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise InputError(f"{scenes_file}:{number}: no scene with a pose ({error})") from None
+def _places(scenes_file, wrong):
+    """Where the car stands in each scene of these."""
+    ids, places = {scene for of_key in wrong.values() for scene, _ in of_key}, {}
+    for number, line in read_lines(scenes_file, ids):
+        require_all(scenes_file, number, line, {"pose": {"x": NUMBER, "y": NUMBER}})
+        places[line.get("id", str(number))] = (line["pose"]["x"], line["pose"]["y"])
     return places
 
 
@@ -314,9 +300,10 @@ def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual
         run_noise_m = float(results.run.get("noise", 0.0))
     except (TypeError, ValueError):
         raise InputError(f"{results.path('run.json')}: noise: has a value of the wrong kind") from None
-    noise_m = {condition["name"]: condition["noise_m"] for condition in conditions}
+    noise_m = {condition["name"]: condition["noise_sigma_m"] for condition in conditions}
     laps = _Laps(results)
-    places, wrong = _poses(scenes_file), _wrong(results)
+    wrong = _wrong(results)
+    places = _places(scenes_file, wrong)
     worst = {key: chosen for key, of_key in wrong.items() if (chosen := _worst(of_key, places))}
     picked = {scene for scenes in worst.values() for scene in scenes}
     chosen, stride = _chosen_laps(results, laps, tracks)

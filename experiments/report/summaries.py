@@ -2,7 +2,7 @@
 evaluation/scoring/statistics.cpp, too."""
 
 import math
-from statistics import median  # noqa: F401  (the mean of the two in the middle where the number of values is even)
+from statistics import fmean, median  # median: the mean of the two in the middle where the number of values is even
 
 UNKNOWN = "–"
 
@@ -25,3 +25,28 @@ def percent(share, digits=1):
 def percent_label(rate):
     """A rate as axes and tables name it: 16.7, not 16.66; 30, not 30.0."""
     return percent(rate).rstrip("0").rstrip(".")
+
+
+def race_measures(races):
+    """What the races of one driver come to, as docs/race.md has it; None where nothing is known."""
+    def known(key):
+        return [race[key] for race in races if race.get(key) is not None]
+
+    def total(key):
+        return sum(known(key))
+
+    def of_known(statistic, key):
+        return statistic(known(key)) if known(key) else None
+    frames = max(1, total("frames"))
+    return {"races": len(races), "finished": fmean(float(race["finished"]) for race in races),
+            # The lap in which a race ended counts as one.
+            "hit_a_lap": fmean(race["cones_hit"] / max(1, race["finished_laps"] + (not race["finished"])) for race in races),
+            "lateral_error_p95_m": of_known(median, "lateral_error_p95_m"), "unsteady": of_known(fmean, "unsteady_share"),
+            "wrong": total("wrong_unflagged") / frames, "departure_m": of_known(median, "departure_m"),
+            "without_path": total("frames_without_path") / frames, "old_path": total("old_path_s") / max(1e-9, total("time_s"))}
+
+
+def is_close(row):
+    """Whether what a search knew at its limit is within 1 % of the best that is known."""
+    known = row.get("best_known")
+    return row["proven"] or (known is not None and "objective" in row and row["objective"] - known <= 0.01 * max(1.0, abs(known)))

@@ -1,7 +1,5 @@
-"use strict";
 // The scene viewer.
 (() => {
-  const { data, marks, color, prepare, trace, positions, strokeTrack, drawFrame } = drawing;
   if (!data) return;
   const element = (name) => document.getElementById("view-" + name);
   const box = document.getElementById("viewer");
@@ -15,44 +13,36 @@
     const reach = 100 * state.lap.range;
     const scale = Math.min(width / (2.04 * reach), height / (1.1 * reach));
     const below = Math.max(0.05 * reach * scale, 18); // room for the car and the distances
-    return { scale, x: (ahead, left) => width / 2 - left * scale, y: (ahead) => height - below - ahead * scale };
+    return { scale, at: ([ahead, left]) => [width / 2 - left * scale, height - below - ahead * scale] };
   };
 
-  const drawRange = (context, view) => {
-    const reach = 100 * state.lap.range;
-    context.strokeStyle = color("--grid");
-    context.fillStyle = color("--muted");
-    context.font = "11px system-ui, sans-serif";
+  const drawRange = (drawing) => {
+    const reach = 100 * state.lap.range, [x, y] = drawing.view.at([0, 0]);
     for (let radius = 1000; radius <= reach + 1; radius += 1000) {
-      context.beginPath();
-      context.arc(view.x(0, 0), view.y(0), radius * view.scale, Math.PI, 2 * Math.PI);
-      context.stroke();
-      context.fillText(radius / 100 + " m", view.x(0, -radius) - 28, view.y(0) + 11); // beside the car, where no lane is
+      drawing.paint({ color: "grid" }, (context) => context.arc(x, y, radius * drawing.view.scale, Math.PI, 2 * Math.PI));
+      drawing.text(radius / 100 + " m", [x + radius * drawing.view.scale - 28, y + 11], { color: "muted" }); // beside the car, where no lane is
     }
   };
 
   const drawScene = () => {
-    const { context, width, height } = prepare(scene);
-    const view = fit(width, height), track = data.tracks[state.lap.track];
-    drawRange(context, view);
+    const { context, width, height } = sized(scene);
+    const drawing = new Drawing(context, fit(width, height)), track = data.tracks[state.lap.track];
+    drawRange(drawing);
     if (track) { // the annotated boundaries, and of a run the path that was driven
-      for (const side of [track.left, track.right]) strokeTrack(context, view, frame(), side, marks.boundary, track.closed);
-      strokeTrack(context, view, frame(), track.driven, marks.driven, false);
+      for (const side of [track.left, track.right]) drawTrack(drawing, frame(), side, marks.boundary, track.closed);
+      drawTrack(drawing, frame(), track.driven, marks.driven, false);
     }
-    drawFrame(context, view, frame(), data.methods.map((_, i) => i).filter((i) => state.shown[i]));
+    drawFrame(drawing, frame(), data.methods.map((_, i) => i).filter((i) => state.shown[i]));
   };
 
   /// Map of the whole track: world coordinates, its poses in order.
   const mapOf = () => {
     const { lap } = state;
     if (!trackFrames.has(lap)) {
-      const track = data.tracks[lap.track];
-      const poses = lap.scenes.map((name) => data.frames[name].p);
-      const flat = [...(track ? [...track.left, ...track.right, ...track.driven] : []),
-                    ...poses.flatMap(([x, y]) => [x, y])];
-      const xs = flat.filter((_, i) => i % 2 === 0), ys = flat.filter((_, i) => i % 2 === 1);
-      trackFrames.set(lap, { track, poses, low: [Math.min(...xs), Math.min(...ys)],
-                             high: [Math.max(...xs), Math.max(...ys)] });
+      const track = data.tracks[lap.track], poses = lap.scenes.map((name) => data.frames[name].p.slice(0, 2));
+      const all = [...(track ? pairs([...track.left, ...track.right, ...track.driven]) : []), ...poses];
+      const ends = (of) => [0, 1].map((axis) => of(...all.map((point) => point[axis])));
+      trackFrames.set(lap, { track, poses, low: ends(Math.min), high: ends(Math.max) });
     }
     return trackFrames.get(lap);
   };
@@ -60,29 +50,17 @@
   const mapView = (width, height) => {
     const { low, high } = mapOf();
     const scale = Math.min((width - 12) / Math.max(1, high[0] - low[0]), (height - 12) / Math.max(1, high[1] - low[1]));
-    const top = (high[1] - low[1]) * scale;
-    return ([x, y]) => [width - 6 - (high[0] - x) * scale, 6 + top - (y - low[1]) * scale];
+    return { scale, at: ([x, y]) => [width - 6 - (high[0] - x) * scale, 6 + (high[1] - y) * scale] };
   };
 
   const drawMap = () => {
-    const { context, width, height } = prepare(map);
-    const { track, poses } = mapOf();
-    const place = mapView(width, height);
-    const lines = track ? [[track.left, "--muted", track.closed], [track.right, "--muted", track.closed],
-                           [track.driven, "--accent", false]] : [];
-    for (const [line, stroke, closed] of lines) {
-      const points = [];
-      for (let i = 0; i < line.length; i += 2) points.push(place([line[i], line[i + 1]]));
-      context.strokeStyle = color(stroke);
-      context.beginPath();
-      trace(context, points, closed);
-      context.stroke();
+    const { context, width, height } = sized(map), { track, poses } = mapOf();
+    const drawing = new Drawing(context, mapView(width, height));
+    if (track) {
+      for (const side of [track.left, track.right]) drawing.line(pairs(side), { color: "muted" }, track.closed);
+      drawing.line(pairs(track.driven), { color: "accent" });
     }
-    const [x, y] = place(poses[state.pose]);
-    context.fillStyle = color("--accent");
-    context.beginPath();
-    context.arc(x, y, 4.5, 0, 2 * Math.PI);
-    context.fill();
+    drawing.points([poses[state.pose]], { shape: "dot", radius: 4.5, color: "accent" });
   };
 
   const rows = data.methods.map((method, i) => {
@@ -206,18 +184,16 @@
   });
   scene.addEventListener("pointerdown", () => box.focus({ preventScroll: true }));
 
+  const far = (point, event) => distance(point, [event.offsetX, event.offsetY]);
+  const nearestOf = (points, event) => points.reduce((best, point, i) => (best >= 0 && far(points[best], event) <= far(point, event) ? best : i), -1);
   scene.addEventListener("pointermove", (event) => {
     const view = fit(scene.clientWidth, scene.clientHeight), { c, f, m = [] } = frame();
-    const seen = c.length / 2, flat = [...c, ...m], points = positions(flat, view);
-    let nearest = -1, least = 12;
-    points.forEach(([x, y], i) => {
-      const distance = Math.hypot(x - event.offsetX, y - event.offsetY);
-      if (distance < least) { least = distance; nearest = i; }
-    });
-    tip.hidden = nearest < 0;
+    const seen = c.length / 2, places = pairs([...c, ...m]), points = places.map(view.at);
+    const nearest = nearestOf(points, event);
+    tip.hidden = nearest < 0 || far(points[nearest], event) >= 12;
     if (tip.hidden) return;
     const kind = nearest >= seen ? "missed cone" : nearest < seen - f ? "cone" : "false positive";
-    const ahead = flat[2 * nearest] / 100, left = flat[2 * nearest + 1] / 100;
+    const [ahead, left] = places[nearest].map((value) => value / 100);
     tip.textContent = `${kind}, ${ahead.toFixed(2)} m ahead, ` +
       `${Math.abs(left).toFixed(2)} m ${left < 0 ? "right" : "left"}`;
     const [x, y] = points[nearest];
@@ -226,12 +202,7 @@
   });
   scene.addEventListener("pointerleave", () => { tip.hidden = true; });
   map.addEventListener("click", (event) => {
-    const place = mapView(map.clientWidth, map.clientHeight);
-    const distances = mapOf().poses.map((pose) => {
-      const [x, y] = place(pose);
-      return Math.hypot(x - event.offsetX, y - event.offsetY);
-    });
-    go(distances.indexOf(Math.min(...distances)));
+    go(nearestOf(mapOf().poses.map(mapView(map.clientWidth, map.clientHeight).at), event));
   });
 
   const open = (name) => {

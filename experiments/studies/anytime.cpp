@@ -1,159 +1,122 @@
-#include "experiments/studies/anytime.hpp"
-
-#include "conelane/invalid_input.hpp"
-#include "conelane/solve_scene.hpp"
-#include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/scoring/statistics.hpp"
-#include "experiments/progress/progress.hpp"
-#include "experiments/studies/cone_sets.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/studies/solve_study.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/studies/study_options.hpp"
-#include "experiments/studies/text_table.hpp"
-#include "solvers/registry.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <map>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {
 
 constexpr double kCloseIncumbent = 0.01;  ///< relative to the best one known
 
-void add_rows(const AnnotatedScene& scene, RldSolver& solver, const AnytimeOptions& options,
-              std::vector<AnytimeRow>& rows) {
-    const std::size_t first = rows.size();
-    for (const double limit_ms : options.limits_ms) {
-        if (rows.size() > first && rows.back().proven) {
-            rows.push_back(rows.back());
-            rows.back().limit_ms = limit_ms;
-            continue;
-        }
-        const RldReport report =
-            solve_scene(solver, scene.scene, options.parameters, {.limits = {limit_ms}}).report;
-        if (report.status == SolveStatus::error) throw InvalidInput(scene.scene.id, report.message);
-        const bool proven = report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible;
-        rows.push_back({&scene, limit_ms, proven, report.objective, report.bound, {}});
+/// One scene under one limit.
+struct AnytimeRow : SolveRow {
+    double limit_ms = 0.0;
+    std::optional<double> best_known = {};  ///< the lowest objective under any limit
+
+    /// From the bound to the best one known, relative; 0 of a proven scene.
+    [[nodiscard]] std::optional<double> gap() const {
+        if (is_proven()) return 0.0;
+        if (!best_known || !bound) return std::nullopt;
+        return std::max(0.0, *best_known - *bound) / std::max(1.0, std::abs(*best_known));
     }
-    std::optional<double> best;
-    for (std::size_t k = first; k < rows.size(); ++k) {
-        if (rows[k].objective) best = std::min(best.value_or(*rows[k].objective), *rows[k].objective);
+    [[nodiscard]] bool is_open() const { return !is_proven(); }
+    [[nodiscard]] bool is_close() const {
+        return is_proven() || (objective && relative_gap(*objective, *best_known) <= kCloseIncumbent);
     }
-    for (std::size_t k = first; k < rows.size(); ++k) rows[k].best_known = best;
+    [[nodiscard]] std::optional<double> open_gap() const { return is_proven() ? std::nullopt : gap(); }
+};
+
+std::optional<double> close_share_of_open(const RowGroup<AnytimeRow>& group) {
+    const std::size_t open = group.count(&AnytimeRow::is_open);
+    return share(group.count(&AnytimeRow::is_close) + open - group.size(), open);
 }
 
-bool is_close(const AnytimeRow& row) {
-    return row.objective && relative_gap(*row.objective, *row.best_known) <= kCloseIncumbent;
-}
-
-nlohmann::ordered_json row_to_json(const AnytimeRow& row) {
-    nlohmann::ordered_json json{{"scene", row.scene->scene.id},
-                                {"track", row.scene->track},
-                                {"cones", row.scene->scene.cones.size()},
-                                {"limit_ms", row.limit_ms},
-                                {"proven", row.proven}};
-    if (row.objective) json["objective"] = *row.objective;
-    if (row.bound) put_bound(json, *row.bound, "bound");
-    if (row.best_known) json["best_known"] = *row.best_known;
-    if (const auto gap = proven_gap(row)) json["gap"] = *gap;
-    return json;
-}
-
-class AnytimeStudy : public Study {
+class AnytimeStudy : public SolveStudy {
   public:
     AnytimeStudy()
-        : Study({"anytime", "what does path-pair know when its time is up?",
-                 "All cones of each scene, solved again under each limit, wall clock, one thread. Gap: from "
-                 "the "
-                 "bound to the best lane graph known under any limit, divided by the larger of 1 and its "
-                 "cost's size. An incumbent is close where it costs within 1 % of that lane graph."}) {}
+        : SolveStudy({"anytime", "what does path-pair know when its time is up?",
+                      "All cones of each scene, solved again under each limit, wall clock, one thread. Gap: "
+                      "from the bound to the best lane graph known under any limit, divided by the larger of "
+                      "1 and its cost's size. An incumbent is close where it costs within 1 % of that lane "
+                      "graph."},
+                     {.backends = {{"path-pair"}}, .time_limit_ms = 0.0}) {}
 
     void add_options(CLI::App& command) override {
-        add_input_options(command, input_);
-        command.add_option("--limits", options_.limits_ms, "milliseconds, ascending")
-            ->delimiter(',')
-            ->check(CLI::Range(0.1, 1e7))
-            ->capture_default_str();
-        command
-            .add_option_function<std::size_t>(
-                "--limit", [this](std::size_t count) { options_.limit = count; },
-                "scenes at most, evenly spread")
-            ->check(whole_number(1, 1'000'000));
+        SolveStudy::add_options(command);
+        add_limits_option(command, "--limits", limits_ms_, "milliseconds, ascending")->capture_default_str();
     }
 
-    StudyResult run() override {
-        options_.parameters = input_.parameters.load();
-        const std::vector<AnnotatedScene> scenes = read_scenes(input_.scenes);
-        const std::vector<AnytimeRow> rows = anytime_rows(scenes, options_);
-        return study_result(anytime_table(rows, options_.limits_ms), rows,
-                            [](const AnytimeRow& row) { return row_to_json(row); });
+  protected:
+    StudyResult aggregate(const SceneSet& set, SolveOptions solves) override {
+        require_ascending("--limits", limits_ms_);
+        const std::vector<AnnotatedScene> scenes = spread(set.scenes, solves.limit);
+        solves.sizes = {kAllVisible};
+        solves.limit.reset();
+        std::map<const AnnotatedScene*, std::vector<AnytimeRow>> of_scene;
+        // What is proven under a limit is proven under longer ones.
+        solves.wanted = [&](const AnnotatedScene& scene, std::size_t /*size*/) {
+            const std::vector<AnytimeRow>& known = of_scene[&scene];
+            return known.empty() || !known.back().is_proven();
+        };
+        for (const double limit_ms : limits_ms_) {
+            solves.time_limit_ms = limit_ms;
+            for (SolveRow& row : solved_scenes(scenes, solves))
+                of_scene[row.scene].push_back({std::move(row), limit_ms});
+            for (const AnnotatedScene& scene : scenes) {
+                std::vector<AnytimeRow>& known = of_scene[&scene];
+                if (known.back().limit_ms != limit_ms) known.push_back(known.back());
+                known.back().limit_ms = limit_ms;
+            }
+        }
+        std::vector<AnytimeRow> rows;
+        for (const AnnotatedScene& scene : scenes) {
+            std::optional<double> best;
+            for (const AnytimeRow& row : of_scene[&scene]) {
+                if (row.objective) best = std::min(best.value_or(*row.objective), *row.objective);
+            }
+            for (AnytimeRow& row : of_scene[&scene]) {
+                row.best_known = best;
+                rows.push_back(std::move(row));
+            }
+        }
+        return result_of(rows);
     }
 
   private:
-    StudyInput input_;
-    AnytimeOptions options_;
+    static StudyResult result_of(const std::vector<AnytimeRow>& rows) {
+        using Row = AnytimeRow;
+        const RowFields<Row> fields =
+            with_scene<Row>({{"cones", &Row::cones},
+                             {"limit_ms", &Row::limit_ms},
+                             {"proven", &Row::is_proven},
+                             {"objective", &Row::objective},
+                             {"bound", [](const Row& row) { return bound_value(row.bound); }},
+                             {"best_known", &Row::best_known},
+                             {"gap", &Row::gap}});
+        const RowFields<RowGroup<Row>> of_limits{
+            {"", first_of(&Row::limit_ms), Shown::number("limit ms")},
+            {"", &RowGroup<Row>::size, Shown::number("scenes")},
+            {"", share_of(&Row::is_proven), Shown::percent("proven %", 1)},
+            {"", count_of(&Row::is_open), Shown::number("open")},
+            {"", share_of(&Row::is_close), Shown::percent("close %", 1)},
+            {"", close_share_of_open, Shown::percent("open: close %", 1)},
+            {"", median_of(&Row::open_gap), Shown::percent("median gap %", 1)},
+            {"", quantile_of(&Row::open_gap, 0.9), Shown::percent("p90 gap %", 1)}};
+        StudyResult result;
+        result.add_rows(rows, fields);
+        result.table =
+            row_table(groups_of<Row>(rows, [](const Row& row) { return row.limit_ms; }), of_limits);
+        return result;
+    }
+
+    std::vector<double> limits_ms_{5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0};
 };
 
 }  // namespace
-
-std::vector<AnytimeRow> anytime_rows(std::span<const AnnotatedScene> scenes, const AnytimeOptions& options) {
-    if (!std::ranges::is_sorted(options.limits_ms, std::less_equal()) || options.limits_ms.empty())
-        throw InvalidInput("--limits", "must be in ascending order");
-    const std::unique_ptr<RldSolver> solver = find_rld_solver("path-pair")->make(Formulation::tight);
-    const std::size_t count = std::min(options.limit.value_or(scenes.size()), scenes.size());
-    std::vector<AnytimeRow> rows;
-    Progress progress("anytime", count);
-    for (std::size_t k = 0; k < count; ++k) {
-        add_rows(scenes[k * scenes.size() / count], *solver, options, rows);
-        progress.advance();
-    }
-    return rows;
-}
-
-std::optional<double> proven_gap(const AnytimeRow& row) {
-    if (row.proven) return 0.0;
-    if (!row.best_known || !row.bound) return std::nullopt;
-    return std::max(0.0, *row.best_known - *row.bound) / std::max(1.0, std::abs(*row.best_known));
-}
-
-std::string anytime_table(std::span<const AnytimeRow> rows, std::span<const double> limits_ms) {
-    TextTable table({{"limit ms"},
-                     {"scenes"},
-                     {"proven %"},
-                     {"open"},
-                     {"close %"},
-                     {"open: close %"},
-                     {"median gap %"},
-                     {"p90 gap %"}});
-    for (const double limit_ms : limits_ms) {
-        std::size_t scenes = 0;
-        std::size_t proven = 0;
-        std::size_t close = 0;
-        std::vector<double> gaps;
-        for (const AnytimeRow& row : rows) {
-            if (row.limit_ms != limit_ms) continue;
-            ++scenes;
-            if (row.proven) {
-                ++proven;
-                continue;
-            }
-            if (is_close(row)) ++close;
-            if (const auto gap = proven_gap(row)) gaps.push_back(*gap);
-        }
-        const auto of_gaps = [&](double share) {
-            return gaps.empty() ? std::nullopt : std::optional(quantile(gaps, share));
-        };
-        table.add({fmt::format("{:g}", limit_ms), std::to_string(scenes), percent(share(proven, scenes), 1),
-                   std::to_string(scenes - proven), percent(share(proven + close, scenes), 1),
-                   percent(share(close, scenes - proven), 1), percent(of_gaps(0.5), 1),
-                   percent(of_gaps(0.9), 1)});
-    }
-    return table.text();
-}
 
 std::unique_ptr<Study> make_anytime_study() {
     return std::make_unique<AnytimeStudy>();

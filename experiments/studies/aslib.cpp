@@ -1,16 +1,14 @@
 #include "experiments/studies/aslib.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "experiments/instances/files_together.hpp"
 #include "experiments/instances/instance_features.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <set>
-#include <sstream>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -34,7 +32,7 @@ std::string quoted(const std::string& name) {
     return "'" + name + "'";
 }
 
-std::string_view run_status(const BackendRow& row, double limit_ms) {
+std::string_view run_status(const SolveRow& row, double limit_ms) {
     if (row.refuted) return "other";  // a wrong answer
     switch (row.status) {
         case SolveStatus::optimal:
@@ -53,7 +51,7 @@ std::string number(double value) {
     return std::isfinite(value) ? fmt::format("{:.9g}", value) : "?";
 }
 
-std::string description(std::span<const std::string> algorithms, const BackendOptions& options) {
+std::string description(std::span<const std::string> algorithms, const SolveOptions& options) {
     std::vector<std::string> problem, relaxation;
     for (const NamedFeature& feature : named({})) {
         auto& group = problem.size() < kProblemFeatures ? problem : relaxation;
@@ -84,74 +82,67 @@ std::map<std::string, std::size_t> folds_of(const std::set<SizeAndScene>& instan
     return folds;
 }
 
+/// A table of instances in the format ARFF.
+struct ArffTable {
+    std::string text;
+
+    ArffTable(std::string_view relation, const std::vector<std::string>& attributes)
+        : text(fmt::format("@RELATION {}_CONELANE\n\n@ATTRIBUTE instance_id STRING\n@ATTRIBUTE repetition "
+                           "NUMERIC\n@ATTRIBUTE {}\n\n@DATA\n",
+                           relation, fmt::join(attributes, "\n@ATTRIBUTE "))) {}
+
+    void add(const SizeAndScene& instance, std::size_t repetition, const std::vector<std::string>& cells) {
+        text += fmt::format("{},{},{}\n", instance_name(instance), repetition, fmt::join(cells, ","));
+    }
+};
+
 }  // namespace
 
-void write_aslib_scenario(const std::filesystem::path& folder, std::span<const BackendRow> rows,
-                          const BackendOptions& options) {
+void write_aslib_scenario(const std::filesystem::path& folder, std::span<const SolveRow> rows,
+                          const SolveOptions& options) {
+    ArffTable runs("ALGORITHM_RUNS", {"algorithm STRING", "runtime NUMERIC",
+                                      "runstatus {ok,timeout,memout,not_applicable,crash,other}"});
     std::set<SizeAndScene> instances;
     std::vector<std::string> algorithms;
-    std::ostringstream runs;
-    for (const BackendRow& row : rows) {
+    for (const SolveRow& row : rows) {
         if (row.backend.warm_start) continue;
         instances.emplace(row.size, row.scene);
         const std::string label = row.backend.label();
         if (std::ranges::find(algorithms, label) == algorithms.end()) algorithms.push_back(label);
-        runs << instance_name({row.size, row.scene}) << ',' << row.permutation + 1 << ',' << quoted(label)
-             << ',' << number(std::min(row.latency_ms, options.time_limit_ms) / kMsPerS) << ','
-             << run_status(row, options.time_limit_ms) << '\n';
+        runs.add({row.size, row.scene}, row.permutation + 1,
+                 {quoted(label), number(std::min(row.latency_ms, options.time_limit_ms) / kMsPerS),
+                  std::string(run_status(row, options.time_limit_ms))});
     }
     if (instances.empty()) throw InvalidInput("--aslib", "there is no run without a start");
-    const std::string instance_attributes = "@ATTRIBUTE instance_id STRING\n@ATTRIBUTE repetition NUMERIC\n";
-    std::ostringstream values, status, costs, cv;
-    values << "@RELATION FEATURE_VALUES_CONELANE\n\n" << instance_attributes;
-    for (const NamedFeature& feature : named({})) values << "@ATTRIBUTE " << feature.name << " NUMERIC\n";
-    values << "\n@DATA\n";
-    status << "@RELATION FEATURE_RUNSTATUS_CONELANE\n\n" << instance_attributes;
-    costs << "@RELATION FEATURE_COSTS_CONELANE\n\n" << instance_attributes;
-    for (const char* const step : {"problem", "relaxation"}) {
-        status << "@ATTRIBUTE " << step << " {ok,timeout,memout,presolved,crash,other,unknown}\n";
-        costs << "@ATTRIBUTE " << step << " NUMERIC\n";
-    }
-    status << "\n@DATA\n";
-    costs << "\n@DATA\n";
-    cv << "@RELATION CV_CONELANE\n\n" << instance_attributes << "@ATTRIBUTE fold NUMERIC\n\n@DATA\n";
+    std::vector<std::string> features;
+    for (const NamedFeature& feature : named({})) features.push_back(fmt::format("{} NUMERIC", feature.name));
+    const std::string statuses = " {ok,timeout,memout,presolved,crash,other,unknown}";
+    ArffTable values("FEATURE_VALUES", features);
+    ArffTable status("FEATURE_RUNSTATUS", {"problem" + statuses, "relaxation" + statuses});
+    ArffTable costs("FEATURE_COSTS", {"problem NUMERIC", "relaxation NUMERIC"});
+    ArffTable cv("CV", {"fold NUMERIC"});
     const std::map<std::string, std::size_t> folds = folds_of(instances);
     for (const SizeAndScene& instance : instances) {
         const auto& [size, scene] = instance;
-        const Scene cones = size == kAllVisible ? scene->scene : nearest_ahead(scene->scene, size);
-        const InstanceFeatures features = features_of(cones, options.parameters);
-        const std::string start = instance_name(instance) + ",1";
-        values << start;
-        for (const NamedFeature& feature : named(features)) values << ',' << number(feature.value);
-        values << '\n';
-        status << start << ",ok," << (features.relaxation ? "ok" : "other") << '\n';
-        costs << start << ',' << number(features.problem_ms / kMsPerS) << ','
-              << number(features.relaxation_ms / kMsPerS) << '\n';
-        cv << start << ',' << folds.at(scene->track) << '\n';
+        const InstanceFeatures of = features_of(cones_of(*scene, size), options.parameters);
+        std::vector<std::string> numbers;
+        for (const NamedFeature& feature : named(of)) numbers.push_back(number(feature.value));
+        values.add(instance, 1, numbers);
+        status.add(instance, 1, {"ok", of.relaxation ? "ok" : "other"});
+        costs.add(instance, 1, {number(of.problem_ms / kMsPerS), number(of.relaxation_ms / kMsPerS)});
+        cv.add(instance, 1, {std::to_string(folds.at(scene->track))});
     }
-    const std::string runs_text =
-        "@RELATION ALGORITHM_RUNS_CONELANE\n\n" + instance_attributes +
-        "@ATTRIBUTE algorithm STRING\n@ATTRIBUTE runtime NUMERIC\n@ATTRIBUTE runstatus "
-        "{ok,timeout,memout,not_applicable,crash,other}\n\n@DATA\n" +
-        runs.str();
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw InputError(folder, 0, "", "cannot be made: " + failure.message());
-    std::vector<std::unique_ptr<AtomicFile>> files;
-    const auto add = [&](const char* name, const std::string& text) {
-        files.push_back(std::make_unique<AtomicFile>(folder / name));
-        files.back()->stream() << text;
-        files.back()->finish();
-    };
-    add("description.txt", description(algorithms, options));
-    add("algorithm_runs.arff", runs_text);
-    add("feature_values.arff", values.str());
-    add("feature_runstatus.arff", status.str());
-    add("feature_costs.arff", costs.str());
-    add("cv.arff", cv.str());
-    std::vector<AtomicFile*> all;
-    for (const auto& file : files) all.push_back(file.get());
-    commit_together(all);
+    FilesTogether files;
+    files.add(folder / "description.txt", description(algorithms, options));
+    files.add(folder / "algorithm_runs.arff", runs.text);
+    files.add(folder / "feature_values.arff", values.text);
+    files.add(folder / "feature_runstatus.arff", status.text);
+    files.add(folder / "feature_costs.arff", costs.text);
+    files.add(folder / "cv.arff", cv.text);
+    files.commit();
 }
 
 }  // namespace conelane::experiments

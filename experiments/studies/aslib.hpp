@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/studies/backends.hpp"
+#include "experiments/studies/solve_rows.hpp"
 
 #include <filesystem>
 #include <span>
@@ -14,7 +14,7 @@ namespace conelane::experiments {
 /// one, at most ten. Features are computed on this machine (see InstanceFeatures), without the gap of the
 /// relaxation. All files appear or none. Throws InputError if the folder cannot be made or written,
 /// InvalidInput if there is no row.
-void write_aslib_scenario(const std::filesystem::path& folder, std::span<const BackendRow> rows,
-                          const BackendOptions& options);
+void write_aslib_scenario(const std::filesystem::path& folder, std::span<const SolveRow> rows,
+                          const SolveOptions& options);
 
 }  // namespace conelane::experiments

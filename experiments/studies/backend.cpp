@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/version.hpp"
-#include "evaluation/outside/permuted_program.hpp"
+#include "evaluation/outside/solver_input.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 
@@ -76,7 +76,7 @@ std::string Backend::label() const {
 bool Backend::takes(std::size_t cones) const {
     if (outside) return true;
     const RldSolverEntry& entry = entry_of(*this);
-    return !entry.max_cones || cones <= *entry.max_cones;
+    return !entry.max_cones || (cones > 0 && cones <= *entry.max_cones);
 }
 
 std::vector<Backend> exact_backends() {

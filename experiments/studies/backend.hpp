@@ -16,7 +16,7 @@ namespace conelane::experiments {
 
 /// A solver on a formulation, from nothing or from the lane graph of the scene before.
 struct Backend {
-    std::string solver;  ///< of the registry, or the NAME of a program from outside
+    std::string solver = {};  ///< of the registry, or the NAME of a program from outside
     Formulation formulation = Formulation::tight;
     bool warm_start = false;
     std::optional<OutsideDetector> outside{};
@@ -26,7 +26,7 @@ struct Backend {
     /// formulations.
     [[nodiscard]] std::string label() const;
     [[nodiscard]] bool uses_formulation() const;
-    /// Whether the solver takes cone sets of this size.
+    /// Whether the solver takes cone sets of this size, 0 for any (RldSolverEntry::max_cones).
     [[nodiscard]] bool takes(std::size_t cones) const;
 };
 

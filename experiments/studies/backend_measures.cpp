@@ -2,7 +2,6 @@
 
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/scoring/wilcoxon.hpp"
-#include "experiments/studies/text_table.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,63 @@
 namespace conelane::experiments {
 namespace {
 
+/// The rows that a figure is of.
+struct MeasuredGroup {
+    std::size_t size = 0;
+    std::string condition = {};  ///< empty: all scenes
+};
+
+struct BackendSummary : MeasuredGroup {
+    std::string backend;
+    std::size_t scenes = 0, runs = 0, solved = 0;
+    std::size_t errors = 0, refuted = 0;  ///< of all runs of this backend
+    double geometric_ms = 0.0, par1_ms = 0.0, par2_ms = 0.0, par10_ms = 0.0, median_ms = 0.0;
+    std::size_t common = 0;                                      ///< runs that every backend solved
+    std::optional<double> common_geometric_ms;                   ///< over these
+    std::optional<double> median_engine_ms;                      ///< in runs that report it
+    std::optional<double> variability, spread;                   ///< medians over scenes
+    std::size_t integrals = 0;                                   ///< scenes with steps and a known lane graph
+    std::optional<double> primal_integral_ms, dual_integral_ms;  ///< means over these
+    std::vector<double> profile;                                 ///< at profile_ratios()
+    std::size_t won = 0;                                         ///< runs that it solves first
+    std::optional<std::size_t> peak_bytes;                       ///< of its block
+};
+
+/// Wilcoxon's test on two backends: geometric means of a scene's times, failures at the limit.
+struct BackendPair : MeasuredGroup {
+    std::string first, second;
+    std::size_t scenes = 0;  ///< whose times differ
+    double ratio = 1.0;      ///< geometric mean of first / second
+    double p_value = 1.0;
+    double corrected_p_value = 1.0;  ///< Holm, over the pairs of this size and condition
+};
+
+struct BackendSelection : MeasuredGroup {
+    std::string single_best;
+    double single_par10_ms = 0.0, virtual_par10_ms = 0.0;
+};
+
+/// Gaps after some time, over all scenes with steps and a known lane graph.
+struct BackendGap : MeasuredGroup {
+    std::string backend;
+    double time_ms = 0.0, mean_primal_gap = 0.0, mean_dual_gap = 0.0;
+};
+
+struct BackendMeasures {
+    std::vector<BackendSummary> summaries;  ///< by size, condition and backend
+    std::vector<BackendPair> pairs;
+    std::vector<BackendSelection> selections;
+    std::vector<BackendGap> gaps;
+};
+
+/// Multiples of the fastest time at which profiles are evaluated: 1 to 1000, 25 a decade.
+std::vector<double> profile_ratios() {
+    constexpr int kSteps = 75;
+    std::vector<double> ratios;
+    for (int k = 0; k <= kSteps; ++k) ratios.push_back(std::pow(10.0, 3.0 * k / kSteps));
+    return ratios;
+}
+
 constexpr double kPar1 = 1.0;
 constexpr double kPar2 = 2.0;
 constexpr double kPar10 = 10.0;
@@ -23,23 +79,20 @@ constexpr double kPar10 = 10.0;
 /// A scene in one of its orders.
 using Run = std::pair<const AnnotatedScene*, std::size_t>;
 
-bool is_solved(const BackendRow& row, double limit_ms) {
-    const bool proven = row.status == SolveStatus::optimal || row.status == SolveStatus::infeasible;
-    return proven && !row.refuted && row.latency_ms <= limit_ms;
+bool is_solved(const SolveRow& row, double limit_ms) {
+    return row.is_proven() && !row.refuted && row.latency_ms <= limit_ms;
 }
 
-SolverRun run_of(const BackendRow& row, double limit_ms) {
+SolverRun run_of(const SolveRow& row, double limit_ms) {
     return {row.latency_ms, is_solved(row, limit_ms)};
 }
 
 /// The rows of one size and condition, by backend in the order in which they first occur, each with its runs.
-struct Group {
-    std::size_t size = 0;
-    std::string condition;
+struct Group : MeasuredGroup {
     std::vector<std::string> backends;
-    std::vector<std::map<Run, const BackendRow*>> rows;
+    std::vector<std::map<Run, const SolveRow*>> rows;
 
-    void add(const BackendRow& row) {
+    void add(const SolveRow& row) {
         const std::string label = row.backend.label();
         auto place = static_cast<std::size_t>(std::ranges::find(backends, label) - backends.begin());
         if (place == backends.size()) {
@@ -65,7 +118,7 @@ struct Group {
         for (const auto& of_one : rows) {
             for (auto row = of_one.lower_bound({scene, 0}); row != of_one.end() && row->first.first == scene;
                  ++row) {
-                const BackendRow& one = *row->second;
+                const SolveRow& one = *row->second;
                 if (one.status == SolveStatus::error || !one.objective) continue;
                 best = std::min(best.value_or(*one.objective), *one.objective);
             }
@@ -74,19 +127,19 @@ struct Group {
     }
 };
 
-std::vector<Group> groups_of(std::span<const BackendRow> rows) {
+std::vector<Group> groups_of_rows(std::span<const SolveRow> rows) {
     std::set<std::string> conditions;
-    for (const BackendRow& row : rows) conditions.insert(row.scene->condition);
+    for (const SolveRow& row : rows) conditions.insert(row.scene->condition);
     std::vector<Group> groups;
     const auto group = [&](std::size_t size, const std::string& condition) -> Group& {
         const auto known = std::ranges::find_if(
             groups, [&](const Group& one) { return one.size == size && one.condition == condition; });
         if (known != groups.end()) return *known;
-        return groups.emplace_back(Group{size, condition, {}, {}});
+        return groups.emplace_back(Group{{size, condition}, {}, {}});
     };
-    for (const BackendRow& row : rows) group(row.size, "").add(row);
+    for (const SolveRow& row : rows) group(row.size, "").add(row);
     if (conditions.size() < 2) return groups;
-    for (const BackendRow& row : rows) {
+    for (const SolveRow& row : rows) {
         if (!row.scene->condition.empty()) group(row.size, row.scene->condition).add(row);
     }
     return groups;
@@ -94,7 +147,7 @@ std::vector<Group> groups_of(std::span<const BackendRow> rows) {
 
 /// The times of each scene over its orders, failures at the limit.
 std::map<const AnnotatedScene*, std::vector<double>> times_by_scene(
-    const std::map<Run, const BackendRow*>& rows, std::span<const Run> runs, double limit_ms) {
+    const std::map<Run, const SolveRow*>& rows, std::span<const Run> runs, double limit_ms) {
     std::map<const AnnotatedScene*, std::vector<double>> times;
     for (const Run& run : runs) {
         const SolverRun one = run_of(*rows.at(run), limit_ms);
@@ -103,35 +156,33 @@ std::map<const AnnotatedScene*, std::vector<double>> times_by_scene(
     return times;
 }
 
-void add_variability(BackendSummary& summary, const std::map<Run, const BackendRow*>& rows, double limit_ms) {
+void add_variability(BackendSummary& summary, const std::map<Run, const SolveRow*>& rows, double limit_ms) {
     std::vector<Run> runs;
     for (const auto& [run, row] : rows) runs.push_back(run);
-    std::vector<double> coefficients, spreads;
+    Sample coefficients, spreads;
     for (const auto& [scene, times] : times_by_scene(rows, runs, limit_ms)) {
         if (times.size() < 2) continue;
         const Variability one = variability_of(times);
-        coefficients.push_back(one.coefficient);
-        spreads.push_back(one.ratio);
+        coefficients.add(one.coefficient);
+        spreads.add(one.ratio);
     }
-    if (coefficients.empty()) return;
-    summary.variability = median(coefficients);
-    summary.spread = median(spreads);
+    summary.variability = coefficients.median();
+    summary.spread = spreads.median();
 }
 
-void add_integrals(BackendSummary& summary, const Group& group, const std::map<Run, const BackendRow*>& rows,
+void add_integrals(BackendSummary& summary, const Group& group, const std::map<Run, const SolveRow*>& rows,
                    double limit_ms) {
-    std::vector<double> primal, dual;
+    Sample primal, dual;
     for (const auto& [run, row] : rows) {
         const auto best = group.known_best(run.first);
         if (row->steps.empty() || !best || row->refuted) continue;
         const GapIntegrals integrals = gap_integrals(row->steps, *best, limit_ms);
-        primal.push_back(integrals.primal_ms);
-        dual.push_back(integrals.dual_ms);
+        primal.add(integrals.primal_ms);
+        dual.add(integrals.dual_ms);
     }
-    summary.integrals = primal.size();
-    if (primal.empty()) return;
-    summary.primal_integral_ms = mean(primal);
-    summary.dual_integral_ms = mean(dual);
+    summary.integrals = primal.values().size();
+    summary.primal_integral_ms = primal.mean();
+    summary.dual_integral_ms = dual.mean();
 }
 
 /// Runs of every backend, in one order.
@@ -155,16 +206,15 @@ void add_summaries(const Group& group, std::span<const Run> common, double limit
     for (const Run& run : common) scenes.insert(run.first);
     for (std::size_t b = 0; b < group.backends.size(); ++b) {
         BackendSummary summary;
-        summary.size = group.size;
-        summary.condition = group.condition;
+        static_cast<MeasuredGroup&>(summary) = group;
         summary.backend = group.backends[b];
         summary.scenes = scenes.size();
         summary.runs = common.size();
-        std::vector<double> engine_ms;
+        Sample engine_ms;
         for (const Run& run : common) {
-            const BackendRow& row = *group.rows[b].at(run);
+            const SolveRow& row = *group.rows[b].at(run);
             summary.solved += is_solved(row, limit_ms) ? 1 : 0;
-            if (row.engine_ms) engine_ms.push_back(*row.engine_ms);
+            engine_ms.add(row.engine_ms);
         }
         for (const auto& [run, row] : group.rows[b]) {
             summary.refuted += row->refuted ? 1 : 0;
@@ -182,7 +232,7 @@ void add_summaries(const Group& group, std::span<const Run> common, double limit
             for (const std::size_t run : by_all) of_common.push_back(runs[b][run].time_ms);
             summary.common_geometric_ms = shifted_geometric_mean(of_common, kGeometricMeanShift_ms);
         }
-        if (!engine_ms.empty()) summary.median_engine_ms = median(engine_ms);
+        summary.median_engine_ms = engine_ms.median();
         summary.profile = profiles[b];
         summary.won = best.won[b];
         add_variability(summary, group.rows[b], limit_ms);
@@ -207,7 +257,7 @@ void add_pairs(const Group& group, std::span<const Run> common, double limit_ms,
     for (std::size_t a = 0; a < group.backends.size(); ++a) {
         for (std::size_t b = a + 1; b < group.backends.size(); ++b) {
             const SignedRankTest test = signed_rank_test(logarithms[a], logarithms[b]);
-            pairs.push_back({group.size, group.condition, group.backends[a], group.backends[b], test.pairs,
+            pairs.push_back({group, group.backends[a], group.backends[b], test.pairs,
                              std::exp(mean(logarithms[a]) - mean(logarithms[b])), test.p_value, 1.0});
             p_values.push_back(test.p_value);
         }
@@ -218,7 +268,7 @@ void add_pairs(const Group& group, std::span<const Run> common, double limit_ms,
 
 void add_gaps(const Group& group, double limit_ms, std::vector<BackendGap>& gaps) {
     for (std::size_t b = 0; b < group.backends.size(); ++b) {
-        std::vector<std::pair<const BackendRow*, double>> with_steps;
+        std::vector<std::pair<const SolveRow*, double>> with_steps;
         for (const auto& [run, row] : group.rows[b]) {
             const auto best = group.known_best(run.first);
             if (!row->steps.empty() && best && !row->refuted) with_steps.emplace_back(row, *best);
@@ -226,7 +276,7 @@ void add_gaps(const Group& group, double limit_ms, std::vector<BackendGap>& gaps
         if (with_steps.empty()) continue;
         constexpr double kStep = 1.2589254117941673;  // ten steps a decade
         for (double time_ms = 0.1; time_ms <= limit_ms * (1.0 + 1e-9); time_ms *= kStep) {
-            BackendGap gap{group.size, group.backends[b], time_ms, 0.0, 0.0};
+            BackendGap gap{group, group.backends[b], time_ms, 0.0, 0.0};
             for (const auto& [row, best] : with_steps) {
                 std::optional<double> objective, bound;
                 for (const Knowledge& step : row->steps) {
@@ -244,150 +294,121 @@ void add_gaps(const Group& group, double limit_ms, std::vector<BackendGap>& gaps
     }
 }
 
-nlohmann::ordered_json start_of(const char* row, std::size_t size, const std::string& condition) {
-    nlohmann::ordered_json json{{"row", row}, {"nearest", size}};
-    if (!condition.empty()) json["condition"] = condition;
-    return json;
+/// The kind of a row, and what it is of.
+template <typename Row>
+RowFields<Row> fields_of(const char* kind, const RowFields<Row>& others) {
+    RowFields<Row> fields{
+        {"row", [kind](const Row&) { return kind; }},
+        {"nearest", &Row::size},
+        {"condition", [](const Row& row) { return row.condition.empty() ? FieldValue() : row.condition; }},
+        {"",
+         [](const Row& row) {
+             return size_name(row.size) + (row.condition.empty() ? "" : " " + row.condition);
+         },
+         Shown::text("n")}};
+    fields.insert(fields.end(), others.begin(), others.end());
+    return fields;
 }
 
-template <typename Value>
-void put_if_known(nlohmann::ordered_json& json, const char* key, const std::optional<Value>& value) {
-    if (value) json[key] = *value;
-}
-
-nlohmann::ordered_json to_json(const BackendSummary& one) {
-    nlohmann::ordered_json json = start_of("summary", one.size, one.condition);
-    json["backend"] = one.backend;
-    json["scenes"] = one.scenes;
-    json["runs"] = one.runs;
-    json["solved"] = one.solved;
-    json["errors"] = one.errors;
-    json["refuted"] = one.refuted;
-    json["geometric_ms"] = one.geometric_ms;
-    json["par1_ms"] = one.par1_ms;
-    json["par2_ms"] = one.par2_ms;
-    json["par10_ms"] = one.par10_ms;
-    json["common"] = one.common;
-    put_if_known(json, "common_geometric_ms", one.common_geometric_ms);
-    json["median_ms"] = one.median_ms;
-    put_if_known(json, "median_engine_ms", one.median_engine_ms);
-    put_if_known(json, "variability", one.variability);
-    put_if_known(json, "spread", one.spread);
-    json["integrals"] = one.integrals;
-    put_if_known(json, "primal_integral_ms", one.primal_integral_ms);
-    put_if_known(json, "dual_integral_ms", one.dual_integral_ms);
-    json["profile"] = one.profile;
-    json["won"] = one.won;
-    return json;
-}
-
-std::string group_name(std::size_t size, const std::string& condition) {
-    return condition.empty() ? size_name(size) : size_name(size) + " " + condition;
-}
-
-std::optional<double> mib(std::span<const BackendBlock> blocks, const BackendSummary& summary) {
+RowFields<BackendSummary> summary_fields() {
+    using Row = BackendSummary;
     constexpr double kMiB = 1024.0 * 1024.0;
-    for (const BackendBlock& block : blocks) {
-        if (block.size == summary.size && block.backend == summary.backend && block.peak_bytes)
-            return static_cast<double>(*block.peak_bytes) / kMiB;
-    }
-    return std::nullopt;
+    const auto mib = [](const Row& row) {
+        return row.peak_bytes ? std::optional(static_cast<double>(*row.peak_bytes) / kMiB) : std::nullopt;
+    };
+    return fields_of<Row>(
+        "summary",
+        {{"backend", &Row::backend, Shown::text("backend")},
+         {"scenes", &Row::scenes},
+         {"runs", &Row::runs, Shown::number("runs")},
+         {"solved", &Row::solved},
+         {"", [](const Row& row) { return share(row.solved, row.runs); }, Shown::percent("solved %", 1)},
+         {"errors", &Row::errors, Shown::number("errors")},
+         {"refuted", &Row::refuted},
+         {"geometric_ms", &Row::geometric_ms, Shown::fixed("geo ms", 2)},
+         {"par1_ms", &Row::par1_ms, Shown::fixed("PAR1 ms", 2)},
+         {"par2_ms", &Row::par2_ms, Shown::fixed("PAR2 ms", 2)},
+         {"par10_ms", &Row::par10_ms, Shown::fixed("PAR10 ms", 2)},
+         {"common", &Row::common, Shown::number("by all")},
+         {"common_geometric_ms", &Row::common_geometric_ms, Shown::fixed("geo ms", 2)},
+         {"median_ms", &Row::median_ms},
+         {"median_engine_ms", &Row::median_engine_ms, Shown::fixed("engine ms", 2)},
+         {"variability", &Row::variability, Shown::percent("variation %", 1)},
+         {"spread", &Row::spread, Shown::fixed("max/min", 2)},
+         {"integrals", &Row::integrals},
+         {"primal_integral_ms", &Row::primal_integral_ms, Shown::fixed("primal ms", 2)},
+         {"dual_integral_ms", &Row::dual_integral_ms, Shown::fixed("dual ms", 2)},
+         {"profile", &Row::profile},
+         {"won", &Row::won, Shown::number("first")},
+         {"", mib, Shown::fixed("MiB", 1)}});
 }
 
-}  // namespace
-
-std::span<const double> profile_ratios() {
-    static const std::vector<double> kRatios = [] {
-        constexpr int kSteps = 75;
-        std::vector<double> ratios;
-        for (int k = 0; k <= kSteps; ++k) ratios.push_back(std::pow(10.0, 3.0 * k / kSteps));
-        return ratios;
-    }();
-    return kRatios;
+RowFields<BackendPair> pair_fields() {
+    using Row = BackendPair;
+    const auto short_p = [](double Row::*p) {
+        return [p](const Row& row) { return fmt::format("{:.2g}", row.*p); };
+    };
+    return fields_of<Row>(
+        "pair", {{"first", &Row::first},
+                 {"second", &Row::second},
+                 {"", [](const Row& row) { return row.first + " : " + row.second; }, Shown::text("pair")},
+                 {"scenes", &Row::scenes},
+                 {"ratio", &Row::ratio, Shown::fixed("time ratio", 2)},
+                 {"p_value", &Row::p_value},
+                 {"", short_p(&Row::p_value), Shown::number("p")},
+                 {"corrected_p_value", &Row::corrected_p_value},
+                 {"", short_p(&Row::corrected_p_value), Shown::number("p (Holm)")}});
 }
 
-BackendMeasures measures_of(std::span<const BackendRow> rows, double time_limit_ms) {
+RowFields<BackendSelection> selection_fields() {
+    using Row = BackendSelection;
+    return fields_of<Row>(
+        "selection",
+        {{"single_best", &Row::single_best, Shown::text("single best")},
+         {"single_par10_ms", &Row::single_par10_ms, Shown::fixed("PAR10 ms", 2)},
+         {"virtual_par10_ms", &Row::virtual_par10_ms, Shown::fixed("virtual best PAR10 ms", 2)}});
+}
+
+RowFields<BackendGap> gap_fields() {
+    using Row = BackendGap;
+    return fields_of<Row>("gap", {{"backend", &Row::backend},
+                                  {"time_ms", &Row::time_ms},
+                                  {"mean_primal_gap", &Row::mean_primal_gap},
+                                  {"mean_dual_gap", &Row::mean_dual_gap}});
+}
+
+BackendMeasures measures_of(const SolveResults& results, double time_limit_ms) {
     BackendMeasures measures;
-    for (const Group& group : groups_of(rows)) {
+    for (const Group& group : groups_of_rows(results.rows)) {
         const std::vector<Run> common = group.common_runs();
         if (common.empty()) continue;
         add_summaries(group, common, time_limit_ms, measures.summaries);
         add_pairs(group, common, time_limit_ms, measures.pairs);
         const BestSolvers best = best_solvers(runs_by_backend(group, common, time_limit_ms), time_limit_ms);
-        measures.selections.push_back({group.size, group.condition, group.backends[best.single_best],
-                                       best.single_par10_ms, best.virtual_par10_ms});
+        measures.selections.push_back(
+            {group, group.backends[best.single_best], best.single_par10_ms, best.virtual_par10_ms});
         if (group.condition.empty()) add_gaps(group, time_limit_ms, measures.gaps);
+    }
+    for (BackendSummary& summary : measures.summaries) {
+        for (const SolveBlock& block : results.blocks) {
+            if (block.size == summary.size && block.backend == summary.backend)
+                summary.peak_bytes = block.peak_bytes;
+        }
     }
     return measures;
 }
 
-std::vector<nlohmann::ordered_json> to_json(const BackendMeasures& measures) {
-    std::vector<nlohmann::ordered_json> rows;
-    for (const BackendSummary& one : measures.summaries) rows.push_back(to_json(one));
-    for (const BackendPair& one : measures.pairs) {
-        nlohmann::ordered_json& json = rows.emplace_back(start_of("pair", one.size, one.condition));
-        json["first"] = one.first;
-        json["second"] = one.second;
-        json["scenes"] = one.scenes;
-        json["ratio"] = one.ratio;
-        json["p_value"] = one.p_value;
-        json["corrected_p_value"] = one.corrected_p_value;
-    }
-    for (const BackendSelection& one : measures.selections) {
-        nlohmann::ordered_json& json = rows.emplace_back(start_of("selection", one.size, one.condition));
-        json["single_best"] = one.single_best;
-        json["single_par10_ms"] = one.single_par10_ms;
-        json["virtual_par10_ms"] = one.virtual_par10_ms;
-    }
-    for (const BackendGap& one : measures.gaps) {
-        nlohmann::ordered_json& json = rows.emplace_back(start_of("gap", one.size, ""));
-        json["backend"] = one.backend;
-        json["time_ms"] = one.time_ms;
-        json["mean_primal_gap"] = one.mean_primal_gap;
-        json["mean_dual_gap"] = one.mean_dual_gap;
-    }
-    return rows;
-}
+}  // namespace
 
-std::string measures_table(const BackendMeasures& measures, std::span<const BackendBlock> blocks) {
-    TextTable table({{"n", true},
-                     {"backend", true},
-                     {"runs"},
-                     {"solved %"},
-                     {"errors"},
-                     {"geo ms"},
-                     {"PAR1 ms"},
-                     {"PAR2 ms"},
-                     {"PAR10 ms"},
-                     {"by all"},
-                     {"geo ms"},
-                     {"engine ms"},
-                     {"variation %"},
-                     {"max/min"},
-                     {"primal ms"},
-                     {"dual ms"},
-                     {"first"},
-                     {"MiB"}});
-    for (const BackendSummary& one : measures.summaries) {
-        table.add({group_name(one.size, one.condition), one.backend, std::to_string(one.runs),
-                   percent(share(one.solved, one.runs), 1), std::to_string(one.errors),
-                   fixed(one.geometric_ms, 2), fixed(one.par1_ms, 2), fixed(one.par2_ms, 2),
-                   fixed(one.par10_ms, 2), std::to_string(one.common), fixed(one.common_geometric_ms, 2),
-                   fixed(one.median_engine_ms, 2), percent(one.variability, 1), fixed(one.spread, 2),
-                   fixed(one.primal_integral_ms, 2), fixed(one.dual_integral_ms, 2), std::to_string(one.won),
-                   fixed(mib(blocks, one), 1)});
-    }
-    TextTable pairs({{"n", true}, {"pair", true}, {"time ratio"}, {"p"}, {"p (Holm)"}});
-    for (const BackendPair& one : measures.pairs) {
-        pairs.add({group_name(one.size, one.condition), one.first + " : " + one.second, fixed(one.ratio, 2),
-                   fmt::format("{:.2g}", one.p_value), fmt::format("{:.2g}", one.corrected_p_value)});
-    }
-    TextTable selections({{"n", true}, {"single best", true}, {"PAR10 ms"}, {"virtual best PAR10 ms"}});
-    for (const BackendSelection& one : measures.selections) {
-        selections.add({group_name(one.size, one.condition), one.single_best, fixed(one.single_par10_ms, 2),
-                        fixed(one.virtual_par10_ms, 2)});
-    }
-    return table.text() + '\n' + (measures.pairs.empty() ? "" : pairs.text() + '\n') + selections.text();
+void add_measures(StudyResult& result, const SolveResults& results, double time_limit_ms) {
+    const BackendMeasures measures = measures_of(results, time_limit_ms);
+    result.table += row_table(measures.summaries, summary_fields()) + '\n';
+    if (!measures.pairs.empty()) result.table += row_table(measures.pairs, pair_fields()) + '\n';
+    result.table += row_table(measures.selections, selection_fields());
+    result.add_rows(measures.summaries, summary_fields());
+    result.add_rows(measures.pairs, pair_fields());
+    result.add_rows(measures.selections, selection_fields());
+    result.add_rows(measures.gaps, gap_fields());
 }
 
 }  // namespace conelane::experiments

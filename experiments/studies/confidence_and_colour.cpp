@@ -7,7 +7,6 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/studies/text_table.hpp"
 #include "experiments/tuning/tuner.hpp"
 
 #include <algorithm>
@@ -139,18 +138,21 @@ std::vector<ConfidenceColorRow> rows_with(const SimulatedKnowledge& knowledge,
     return rows;
 }
 
-nlohmann::ordered_json to_json(const ConfidenceColorRow& row, const ConfidenceColorOptions& options) {
-    nlohmann::ordered_json json{{"known", to_string(row.knowledge)},
-                                {"confidence", row.knowledge.confidence}};
-    if (row.knowledge.color_error) json["color_error"] = *row.knowledge.color_error;
-    json["false_positive_rate"] = row.false_positive_rate;
-    json["scenes"] = row.scenes;
-    json["accurate"] = row.accurate;
-    json["success"] = row.success;
-    if (!row.weights.empty()) json["weights"] = row.weights;
-    if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
-    if (options.evaluation.context) json["context"] = *options.evaluation.context;
-    return json;
+RowFields<ConfidenceColorRow> color_fields(const EvaluationOptions& evaluation) {
+    using Row = ConfidenceColorRow;
+    const auto weights = [](const Row& row) { return fmt::format("{}", fmt::join(row.weights, " ")); };
+    return {{"known", [](const Row& row) { return to_string(row.knowledge); }, Shown::text("known")},
+            {"confidence", [](const Row& row) { return row.knowledge.confidence; }},
+            {"color_error", [](const Row& row) { return row.knowledge.color_error; }},
+            {"false_positive_rate", &Row::false_positive_rate, Shown::percent("fp %", 1)},
+            {"scenes", &Row::scenes, Shown::number("scenes")},
+            {"accurate", &Row::accurate, Shown::percent("accurate %", 1)},
+            {"success", &Row::success, Shown::percent("success %", 1)},
+            {"weights", [](const Row& row) { return row.weights.empty() ? FieldValue() : row.weights; }},
+            {"", [weights](const Row& row) { return row.weights.empty() ? "-" : weights(row); },
+             Shown::text("w_b or w_color by fold")},
+            {"nearest", [nearest = evaluation.nearest](const Row&) { return nearest; }},
+            {"context", [context = evaluation.context](const Row&) { return context; }}};
 }
 
 class ConfidenceAndColorStudy : public Study {
@@ -182,9 +184,7 @@ class ConfidenceAndColorStudy : public Study {
         options.scenes.seed = seed_.value_or(options.scenes.seed);
         options.scenes.threads = threads_;
         options.evaluation.threads = threads_;
-        const std::vector<ConfidenceColorRow> rows = confidence_color_rows(options);
-        return study_result(confidence_color_table(rows), rows,
-                            [&](const ConfidenceColorRow& row) { return to_json(row, options); });
+        return study_result(confidence_color_rows(options), color_fields(options.evaluation));
     }
 
   private:
@@ -264,21 +264,6 @@ std::vector<ConfidenceColorRow> confidence_color_rows(const ConfidenceColorOptio
         std::ranges::move(rows_with(knowledge, options, progress), std::back_inserter(rows));
     }
     return rows;
-}
-
-std::string confidence_color_table(std::span<const ConfidenceColorRow> rows) {
-    TextTable table({{"known", true},
-                     {"fp %"},
-                     {"scenes"},
-                     {"accurate %"},
-                     {"success %"},
-                     {"w_b or w_color by fold", true}});
-    for (const ConfidenceColorRow& row : rows) {
-        table.add({to_string(row.knowledge), percent(row.false_positive_rate, 1), std::to_string(row.scenes),
-                   percent(row.accurate, 1), percent(row.success, 1),
-                   row.weights.empty() ? "-" : fmt::format("{}", fmt::join(row.weights, " "))});
-    }
-    return table.text();
 }
 
 std::unique_ptr<Study> make_confidence_and_color_study() {

@@ -7,18 +7,11 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 namespace conelane::experiments {
-
-class Study;
-
-/// RLD with simulated confidences and colors of cones, compared with geometry only.
-[[nodiscard]] std::unique_ptr<Study> make_confidence_and_color_study();
 
 /// Tracks that a fit has not seen, and what it found on the others.
 struct HeldOut {
@@ -61,13 +54,12 @@ struct ConfidenceColorRow {
     double accurate = 0.0;        ///< share of them (RLD paper, IV-B)
     double success = 0.0;         ///< share of all scenes (CLC paper, Table I)
     std::vector<double> weights;  ///< w_b with confidences, w_color with colors, by fold; empty with neither
+
+    bool operator==(const ConfidenceColorRow&) const = default;
 };
 
 /// Rows by knowledge: geometry only, confidences, colors in the order of their errors; then by rate. Throws
 /// InvalidInput if a fold holds out a track that has no scene, or none holds out one of `only`.
 [[nodiscard]] std::vector<ConfidenceColorRow> confidence_color_rows(const ConfidenceColorOptions& options);
-
-/// Of these rows, for a terminal.
-[[nodiscard]] std::string confidence_color_table(std::span<const ConfidenceColorRow> rows);
 
 }  // namespace conelane::experiments

@@ -1,24 +1,21 @@
-#include "experiments/studies/front_beam.hpp"
-
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/studies/study_options.hpp"
-#include "experiments/studies/text_table.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_judge.hpp"
+#include "graph_search/front/front_search.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
-#include <filesystem>
+#include <functional>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -31,59 +28,66 @@ namespace {
 constexpr double kSameScore = 1e-4;
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-/// One width, scene by scene.
+struct FrontBeamOptions {
+    FrontWeights weights;
+    std::vector<std::size_t> beams{5, 10, 15, 30, 100};  ///< states a level, with the detector's other limits
+    /// The last row except for those of `exhaustive_ms`: the widest search, with which the others are
+    /// compared.
+    std::size_t reference_beam = 400;
+    double reference_drop = 12.0;
+    /// A row for each: the search that leaves nothing out (no drop, no merge), stopped after this time.
+    std::vector<double> exhaustive_ms;
+};
+
+/// One scene by one width.
+struct WidthRow {
+    std::size_t width = 0;                                    ///< its place
+    std::size_t beam = 0;                                     ///< 0: no limit
+    double drop = 0.0;                                        ///< infinity: none
+    double score = -std::numeric_limits<double>::infinity();  ///< the highest of a lane
+    bool is_proven = false;     ///< the search left nothing out: no lane has a higher score
+    bool is_best = false;       ///< no other width met a higher score
+    bool first_usable = false;  ///< by score alone
+    bool usable = false;        ///< as the judge orders the best lanes
+    bool any_usable = false;    ///< of the lanes judged
+    double iou = 0.0;           ///< of the judge's first lane
+    double time_ms = 0.0;       ///< of search and judge together
+};
+
 class Width {
   public:
     Width(const FrontWeights& weights, const FrontSearchOptions& search,
           double limit_ms = std::numeric_limits<double>::infinity())
-        : cost_(weights), judge_(weights), options_(search), limit_ms_(limit_ms) {
-        row_.beam = search.beam_width == kAll ? 0 : search.beam_width;
-        row_.drop = search.drop;
-    }
+        : cost_(weights), judge_(weights), options_(search), limit_ms_(limit_ms) {}
 
-    /// The highest score of a lane; minus infinity if there is none.
-    double drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
-        const auto begin = std::chrono::steady_clock::now();
+    WidthRow drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
+        WidthRow row;
+        row.beam = options_.beam_width == kAll ? 0 : options_.beam_width;
+        row.drop = options_.drop;
+        const Stopwatch watch;
         SearchBudget budget;
         budget.deadline = Deadline(limit_ms_);
         search_.begin(scene.scene, cost_, options_);
         search_.run(budget);
-        if (!budget.stopped_by && !search_.left_out()) row_.proven += 1.0;
+        row.is_proven = !budget.stopped_by && !search_.left_out();
         search_.sort_finished(FrontJudge::kContenders);
         contenders_.clear();
         for (const FrontSearch::Finished& lane : search_.finished()) {
             if (contenders_.size() == FrontJudge::kContenders) break;
             contenders_.push_back({lane.parent, lane.score});
         }
-        if (!contenders_.empty()) judge_.look(search_, contenders_);
-        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
-        times_ms_.push_back(took.count());
-        ++row_.scenes;
-        if (contenders_.empty()) return -std::numeric_limits<double>::infinity();
-        bool any = false;
+        if (!contenders_.empty()) judge_.compare(search_, contenders_);
+        row.time_ms = watch.elapsed_ms();
         for (std::size_t place = 0; place < contenders_.size(); ++place) {
             const SceneScore scored = scored_lane(scene, contenders_[place].node, boundaries);
             const bool usable = scored.usable().value_or(false);
-            any = any || usable;
-            if (place == 0 && usable) row_.first_usable += 1.0;
+            row.any_usable = row.any_usable || usable;
+            if (place == 0) row.first_usable = usable;
+            if (place == 0) row.score = contenders_.front().score;
             if (place != judge_.order().front()) continue;
-            if (usable) row_.usable += 1.0;
-            row_.iou += scored.iou.value_or(0.0);
+            row.usable = usable;
+            row.iou = scored.iou.value_or(0.0);
         }
-        if (any) row_.any_usable += 1.0;
-        return contenders_.front().score;
-    }
-
-    void add_best() { row_.best_score += 1.0; }
-
-    [[nodiscard]] FrontBeamRow row() const {
-        FrontBeamRow row = row_;
-        for (double* share :
-             {&row.proven, &row.best_score, &row.first_usable, &row.usable, &row.any_usable, &row.iou})
-            *share /= static_cast<double>(row.scenes);
-        row.median_ms = median(times_ms_);
-        row.p95_ms = quantile(times_ms_, 0.95);
-        row.worst_ms = quantile(times_ms_, 1.0);
         return row;
     }
 
@@ -108,101 +112,31 @@ class Width {
     FrontSearch search_;
     std::vector<FrontJudge::Contender> contenders_;
     std::array<std::vector<Vertex>, 2> cones_;
-    std::vector<double> times_ms_;
-    FrontBeamRow row_;
 };
 
-nlohmann::ordered_json to_json(const FrontBeamRow& row) {
-    return {{"beam", row.beam},
-            {"drop", std::isfinite(row.drop) ? nlohmann::ordered_json(row.drop) : nlohmann::ordered_json()},
-            {"scenes", row.scenes},
-            {"proven", row.proven},
-            {"best_score", row.best_score},
-            {"first_usable", row.first_usable},
-            {"usable", row.usable},
-            {"any_usable", row.any_usable},
-            {"iou", row.iou},
-            {"median_ms", row.median_ms},
-            {"p95_ms", row.p95_ms},
-            {"worst_ms", row.worst_ms}};
+/// Shares are of all scenes with a ground truth.
+RowFields<RowGroup<WidthRow>> width_fields() {
+    using Row = WidthRow;
+    return {
+        {"beam", first_of(&Row::beam)},
+        {"", first_of([](const Row& row) { return row.beam == 0 ? "all" : std::to_string(row.beam); }),
+         Shown::number("beam")},
+        {"drop", first_of([](const Row& row) { return std::isfinite(row.drop) ? Json(row.drop) : Json(); }),
+         Shown::fixed("drop", 1)},
+        {"scenes", &RowGroup<Row>::size, Shown::number("scenes")},
+        {"proven", share_of(&Row::is_proven), Shown::percent("proven %", 2)},
+        {"best_score", share_of(&Row::is_best), Shown::percent("best score %", 2)},
+        {"first_usable", share_of(&Row::first_usable), Shown::percent("usable by score %", 2)},
+        {"usable", share_of(&Row::usable), Shown::percent("usable, judged %", 2)},
+        {"any_usable", share_of(&Row::any_usable), Shown::percent("any usable %", 2)},
+        {"iou", mean_of(&Row::iou), Shown::percent("IoU %", 2)},
+        {"median_ms", median_of(&Row::time_ms), Shown::fixed("median ms", 2)},
+        {"p95_ms", quantile_of(&Row::time_ms, 0.95), Shown::fixed("p95 ms", 2)},
+        {"worst_ms", quantile_of(&Row::time_ms, 1.0), Shown::fixed("worst ms", 2)}};
 }
 
-std::string table_of(std::span<const FrontBeamRow> rows) {
-    TextTable table({{"beam"},
-                     {"drop"},
-                     {"scenes"},
-                     {"proven %"},
-                     {"best score %"},
-                     {"usable by score %"},
-                     {"usable, judged %"},
-                     {"any usable %"},
-                     {"IoU %"},
-                     {"median ms"},
-                     {"p95 ms"},
-                     {"worst ms"}});
-    for (const FrontBeamRow& row : rows) {
-        table.add({row.beam == 0 ? "all" : std::to_string(row.beam),
-                   std::isfinite(row.drop) ? fixed(row.drop, 1) : "-", std::to_string(row.scenes),
-                   percent(row.proven, 2), percent(row.best_score, 2), percent(row.first_usable, 2),
-                   percent(row.usable, 2), percent(row.any_usable, 2), percent(row.iou, 2),
-                   fixed(row.median_ms, 2), fixed(row.p95_ms, 2), fixed(row.worst_ms, 2)});
-    }
-    return table.text();
-}
-
-class FrontBeamStudy : public Study {
-  public:
-    FrontBeamStudy()
-        : Study(
-              {"front-beam",
-               "how often does the beam of front miss the lane of the highest score, and what does the judge "
-               "add to the score?",
-               "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
-               "is the widest search, except for --exhaustive. Best score: the highest of all rows was "
-               "found. "
-               "Proven: nothing was left out, so no allowed lane has a higher score. Any usable: one of the "
-               "best 20 lanes, from which the judge chooses. *.tracks.json beside the scenes has the "
-               "boundaries."}) {}
-
-    void add_options(CLI::App& command) override {
-        command.add_option("--scenes", scenes_, "*.scenes.jsonl; *.tracks.json beside it")->required();
-        command.add_option("--weights", weights_, "weights of front (JSON); those of the library without it");
-        command.add_option("--beams", options_.beams, "numbers of states kept at each level")
-            ->delimiter(',')
-            ->capture_default_str();
-        command.add_option("--reference-beam", options_.reference_beam, "beam of the last row")
-            ->capture_default_str();
-        command.add_option("--reference-drop", options_.reference_drop, "drop of the last row [score]")
-            ->capture_default_str();
-        command
-            .add_option("--exhaustive", options_.exhaustive_ms,
-                        "time limits [ms]: a row for each, by the search that leaves out nothing")
-            ->delimiter(',')
-            ->check(CLI::PositiveNumber);
-    }
-
-    StudyResult run() override {
-        options_.weights =
-            weights_.empty()
-                ? shipped_front_options().weights
-                : parsed_file(weights_, [](const std::string& text) { return parse_front_weights(text); });
-        SceneSet set;
-        set.scenes = read_scenes(scenes_);
-        const std::filesystem::path boundaries = track_boundaries_path(scenes_);
-        if (std::filesystem::exists(boundaries)) set.tracks = read_track_boundaries(boundaries);
-        const std::vector<FrontBeamRow> rows = front_beam_rows(set, options_);
-        return study_result(table_of(rows), rows, [](const FrontBeamRow& row) { return to_json(row); });
-    }
-
-  private:
-    std::string scenes_;
-    std::string weights_;
-    FrontBeamOptions options_;
-};
-
-}  // namespace
-
-std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options) {
+/// Throws InvalidInput if a width or drop is out of range, or no scene has a ground truth.
+std::vector<WidthRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options) {
     std::vector<Width> widths;
     for (const std::size_t beam : options.beams) {
         FrontSearchOptions search;
@@ -224,27 +158,72 @@ std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOp
         widths.emplace_back(options.weights, all, limit_ms);
     }
 
-    std::vector<const AnnotatedScene*> scenes;
+    Progress progress("scenes", set.scenes.size());
+    std::vector<WidthRow> rows;
     for (const AnnotatedScene& scene : set.scenes) {
-        if (counts(scene)) scenes.push_back(&scene);
-    }
-    if (scenes.empty()) throw InvalidInput("scenes", "none has a ground truth");
-    Progress progress("scenes", scenes.size());
-    for (const AnnotatedScene* scene : scenes) {
-        const auto track = set.tracks.find(scene->track);
-        const TrackBoundaries* boundaries = track == set.tracks.end() ? nullptr : &track->second;
-        std::vector<double> best;
-        for (Width& width : widths) best.push_back(width.drive(*scene, boundaries));
-        const double highest = std::ranges::max(best);
-        for (std::size_t i = 0; i < widths.size(); ++i) {
-            if (best[i] >= highest - kSameScore) widths[i].add_best();
-        }
         progress.advance();
+        if (!counts(scene)) continue;
+        const auto track = set.tracks.find(scene.track);
+        const TrackBoundaries* boundaries = track == set.tracks.end() ? nullptr : &track->second;
+        double highest = -std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < widths.size(); ++k) {
+            WidthRow& row = rows.emplace_back(widths[k].drive(scene, boundaries));
+            row.width = k;
+            highest = std::max(highest, row.score);
+        }
+        for (WidthRow& row : std::span(rows).last(widths.size()))
+            row.is_best = row.score >= highest - kSameScore;
     }
-    std::vector<FrontBeamRow> rows;
-    for (const Width& width : widths) rows.push_back(width.row());
+    if (rows.empty()) throw InvalidInput("scenes", "none has a ground truth");
     return rows;
 }
+
+class FrontBeamStudy : public SceneStudy {
+  public:
+    FrontBeamStudy()
+        : SceneStudy(
+              {"front-beam",
+               "how often does the beam of front miss the lane of the highest score, and what does the judge "
+               "add to the score?",
+               "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
+               "is the widest search, except for --exhaustive. Best score: the highest of all rows was "
+               "found. "
+               "Proven: nothing was left out, so no allowed lane has a higher score. Any usable: one of the "
+               "best 20 lanes, from which the judge chooses. *.tracks.json beside the scenes has the "
+               "boundaries."}) {}
+
+    void add_options(CLI::App& command) override {
+        SceneStudy::add_options(command);
+        command.add_option("--weights", weights_, "weights of front (JSON); those of the library without it");
+        command.add_option("--beams", options_.beams, "numbers of states kept at each level")
+            ->delimiter(',')
+            ->capture_default_str();
+        command.add_option("--reference-beam", options_.reference_beam, "beam of the last row")
+            ->capture_default_str();
+        command.add_option("--reference-drop", options_.reference_drop, "drop of the last row [score]")
+            ->capture_default_str();
+        command
+            .add_option("--exhaustive", options_.exhaustive_ms,
+                        "time limits [ms]: a row for each, by the search that leaves out nothing")
+            ->delimiter(',')
+            ->check(CLI::PositiveNumber);
+    }
+
+    StudyResult measure(const SceneSet& set) override {
+        options_.weights =
+            weights_.empty()
+                ? shipped_front_options().weights
+                : parsed_file(weights_, [](const std::string& text) { return parse_front_weights(text); });
+        const std::vector<WidthRow> rows = front_beam_rows(set, options_);
+        return study_result(groups_of<WidthRow>(rows, std::mem_fn(&WidthRow::width)), width_fields());
+    }
+
+  private:
+    std::string weights_;
+    FrontBeamOptions options_;
+};
+
+}  // namespace
 
 std::unique_ptr<Study> make_front_beam_study() {
     return std::make_unique<FrontBeamStudy>();

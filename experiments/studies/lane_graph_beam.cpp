@@ -82,7 +82,8 @@ class Beam {
     /// What a path costs that ends there. It is part of the cost of each edge at the cone, and is taken back
     /// by each turn there.
     [[nodiscard]] double end_cost(std::size_t cone) const {
-        return problem_.learned_end_cost[cone] - problem_.parameters.w_n * problem_.near_end_fit[cone];
+        return problem_.learned_end_cost[cone] -
+               problem_.parameters.near_end_weight * problem_.near_end_fit[cone];
     }
     /// Without that of its head, where the path is open.
     [[nodiscard]] double open_cost(std::size_t arc) const { return edge(arc).cost - end_cost(head(arc)); }

@@ -1,28 +1,22 @@
-#include "experiments/studies/optimality.hpp"
-
 #include "conelane/check.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "evaluation/scoring/statistics.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
-#include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/lane_graph_beam.hpp"
+#include "experiments/studies/solve_study.hpp"
 #include "experiments/studies/study.hpp"
-#include "experiments/studies/text_table.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
-#include <map>
+#include <memory>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -35,6 +29,61 @@
 
 namespace conelane::experiments {
 namespace {
+
+/// An objective: (29) with the costs that the parameters add to it.
+struct NamedCosts {
+    std::string name = "default";
+    RldParameters parameters;
+};
+
+struct OptimalityOptions {
+    std::string detector = "clc";        ///< one that enumerates
+    std::string beside = "front";        ///< one whose lanes are compared with the optimum; none if empty
+    std::optional<std::size_t> nearest;  ///< cone set of all; all cones if absent
+    std::vector<NamedCosts> costs{{}};   ///< at least one
+    std::size_t beam_width = 100;        ///< see beam_lane_graph
+    double time_limit_ms = 400.0;        ///< of the exact search, a scene
+    unsigned threads = 1;
+};
+
+/// A lane under an objective and against the ground truth.
+struct JudgedLane {
+    std::optional<double> objective;  ///< absent if RLD's constraints forbid the lane
+    Category category = Category::none;
+    double iou = 0.0;
+    std::optional<bool> usable;  ///< absent where no boundaries are known
+};
+
+/// One scene under one objective. Candidates are distinct as sets of edges.
+struct OptimalityRow {
+    const AnnotatedScene* scene = nullptr;
+    std::string costs;                        ///< the name of the objective
+    SolveStatus status = SolveStatus::error;  ///< of the exact search
+    std::optional<double> bound;
+    std::size_t candidates = 0;
+    std::size_t feasible = 0;             ///< of them, under RLD's constraints
+    std::optional<JudgedLane> optimum;    ///< the best lane that the exact search found
+    std::optional<JudgedLane> beam;       ///< of the beam search under the same objective
+    std::optional<JudgedLane> candidate;  ///< the feasible one of least objective; of equal ones the first
+    std::optional<JudgedLane> choice;     ///< what the method answers
+    std::optional<JudgedLane> beside;     ///< what the method beside it answers
+
+    /// (lane - optimum) / max(1, |optimum|), at least 0; where the optimum is proven and the lane has an
+    /// objective.
+    [[nodiscard]] std::optional<double> gap_of(const std::optional<JudgedLane>& lane) const {
+        if (!is_proven() || !lane || !lane->objective) return std::nullopt;
+        return relative_gap(*lane->objective, *optimum->objective);
+    }
+    /// That of the candidate.
+    [[nodiscard]] std::optional<double> gap() const { return gap_of(candidate); }
+    /// Whether the candidate's gap is within the solvers' tolerance; absent without a gap.
+    [[nodiscard]] std::optional<bool> is_equal() const {
+        if (!gap()) return std::nullopt;
+        return *candidate->objective - *optimum->objective <= kObjectiveTolerance;
+    }
+    /// Whether the optimum is known.
+    [[nodiscard]] bool is_proven() const { return status == SolveStatus::optimal; }
+};
 
 std::unique_ptr<LaneDetector> made(const std::string& name, const OptimalityOptions& options) {
     const DetectorRecipe& recipe = *find_method(name).recipe;
@@ -135,7 +184,7 @@ class Lap {
                 cones.id,
                 fmt::format("a {} is feasible, but the exact search proved that there is none", what));
         }
-        if (row.status == SolveStatus::optimal && value < *row.optimum->objective - kObjectiveTolerance) {
+        if (row.is_proven() && value < *row.optimum->objective - kObjectiveTolerance) {
             throw InvalidInput(cones.id, fmt::format("a {} has the objective {}, below the proven optimum {}",
                                                      what, value, *row.optimum->objective));
         }
@@ -183,215 +232,172 @@ constexpr std::array kRivals{
     Rival{"beam", &OptimalityRow::beam}, Rival{"candidate", &OptimalityRow::candidate},
     Rival{"choice", &OptimalityRow::choice}, Rival{"beside", &OptimalityRow::beside}};
 
-nlohmann::ordered_json to_json(const JudgedLane& lane) {
-    nlohmann::ordered_json json{{"category", to_string(lane.category)}, {"iou", lane.iou}};
-    if (lane.usable) json["usable"] = *lane.usable;
-    if (lane.objective) json["objective"] = *lane.objective;
-    return json;
+/// A lane of a row for a file.
+FieldValue lane_value(const OptimalityRow& row, const std::optional<JudgedLane>& lane, bool with_gap) {
+    if (!lane) return std::nullopt;
+    const RowFields<JudgedLane> fields{
+        {"category", [](const JudgedLane& one) { return to_string(one.category); }},
+        {"iou", &JudgedLane::iou},
+        {"usable", &JudgedLane::usable},
+        {"objective", &JudgedLane::objective},
+        {"gap", [&](const JudgedLane&) { return with_gap ? row.gap_of(lane) : std::nullopt; }}};
+    return row_json(*lane, fields);
 }
 
-nlohmann::ordered_json to_json(const OptimalityRow& row, const OptimalityOptions& options) {
-    const AnnotatedScene& scene = *row.scene;
-    nlohmann::ordered_json json{{"scene", scene.scene.id}, {"track", scene.track}};
-    if (scene.false_positive_rate) json["false_positive_rate"] = *scene.false_positive_rate;
-    if (scene.range_m) json["range"] = *scene.range_m;
-    if (!scene.condition.empty()) json["condition"] = scene.condition;
-    json["costs"] = row.costs;
-    json["method"] = options.detector;
-    if (!options.beside.empty()) json["method_beside"] = options.beside;
-    json["beam_width"] = options.beam_width;
-    if (options.nearest) json["nearest"] = *options.nearest;
-    json["status"] = to_string(row.status);
-    if (row.bound) put_bound(json, *row.bound, "bound");
-    json["candidates"] = row.candidates;
-    json["feasible_candidates"] = row.feasible;
-    if (row.optimum) json["optimum"] = to_json(*row.optimum);
-    for (const auto& [name, lane] : kRivals) {
-        if (row.*lane) json[name] = to_json(*(row.*lane));
-        if (const auto gap = row.gap_of(row.*lane)) json[name]["gap"] = *gap;
-    }
-    if (const auto gap = row.gap()) {
-        json["gap"] = *gap;
-        json["equal"] = row.is_optimal(row.candidate);
-    }
-    return json;
+RowFields<OptimalityRow> fields_of_file(const OptimalityOptions& options) {
+    using Row = OptimalityRow;
+    RowFields<Row> fields = with_scene<Row>(
+        {{"false_positive_rate", [](const Row& row) { return row.scene->false_positive_rate; }},
+         {"range", [](const Row& row) { return row.scene->range_m; }},
+         {"condition",
+          [](const Row& row) { return row.scene->condition.empty() ? FieldValue() : row.scene->condition; }},
+         {"costs", &Row::costs},
+         {"method", [&](const Row&) { return options.detector; }},
+         {"method_beside",
+          [&](const Row&) { return options.beside.empty() ? FieldValue() : options.beside; }},
+         {"beam_width", [&](const Row&) { return options.beam_width; }},
+         {"nearest", [&](const Row&) { return options.nearest; }},
+         {"status", &Row::status},
+         {"bound", [](const Row& row) { return bound_value(row.bound); }},
+         {"candidates", &Row::candidates},
+         {"feasible_candidates", &Row::feasible},
+         {"optimum", [](const Row& row) { return lane_value(row, row.optimum, false); }}});
+    for (const auto& [name, lane] : kRivals)
+        fields.push_back({name, [lane = lane](const Row& row) { return lane_value(row, row.*lane, true); }});
+    fields.push_back({"gap", &Row::gap});
+    fields.push_back({"equal", &Row::is_equal});
+    return fields;
 }
 
-/// Quality of one lane a scene; no lane is neither usable nor a success.
-struct Quality {
-    std::size_t scenes = 0, known = 0, usable = 0, successes = 0;
-    double iou_sum = 0.0;
-
-    void add(const std::optional<JudgedLane>& lane) {
-        ++scenes;
-        if (!lane || lane->usable) ++known;
-        if (!lane) return;
-        if (lane->usable.value_or(false)) ++usable;
-        if (is_success(lane->category)) ++successes;
-        iou_sum += lane->iou;
-    }
-    /// usable / success / IoU in percent
-    [[nodiscard]] std::string text() const {
-        if (scenes == 0) return "-";
-        return fmt::format("{} / {} / {}", percent(share(usable, known), 1),
-                           percent(share(successes, scenes), 1),
-                           percent(iou_sum / static_cast<double>(scenes), 1));
-    }
-};
-
-/// Rows of one objective, condition and rate.
-struct Group {
-    std::string costs;
-    std::string condition;
-    std::optional<double> rate;
-    std::vector<const OptimalityRow*> rows;
-};
+using Group = RowGroup<OptimalityRow>;
 
 /// In the order of the objectives, conditions and rates.
-std::vector<Group> groups_of(std::span<const OptimalityRow> rows) {
-    std::vector<std::string> costs;
-    std::map<std::tuple<std::size_t, std::string, std::optional<double>>, Group> groups;
-    for (const OptimalityRow& row : rows) {
-        auto known = std::ranges::find(costs, row.costs);
-        if (known == costs.end()) known = costs.insert(costs.end(), row.costs);
-        const auto place = static_cast<std::size_t>(known - costs.begin());
-        const AnnotatedScene& scene = *row.scene;
-        Group& group = groups[{place, scene.condition, scene.false_positive_rate}];
-        group = {row.costs, scene.condition, scene.false_positive_rate, std::move(group.rows)};
-        group.rows.push_back(&row);
+std::vector<Group> groups_of_rows(std::span<const OptimalityRow> rows) {
+    std::vector<Group> groups;
+    const auto condition_and_rate = [](const OptimalityRow& row) {
+        return std::pair(row.scene->condition, row.scene->false_positive_rate);
+    };
+    for (const Group& of_costs : groups_of<OptimalityRow>(rows, std::mem_fn(&OptimalityRow::costs))) {
+        std::vector<Group> some = groups_of<OptimalityRow>(of_costs.each(), condition_and_rate);
+        std::ranges::sort(some, {}, [&](const Group& group) { return condition_and_rate(group.first()); });
+        groups.insert(groups.end(), some.begin(), some.end());
     }
-    std::vector<Group> result;
-    for (auto& [key, group] : groups) result.push_back(std::move(group));
-    return result;
+    return groups;
 }
 
-std::vector<std::string> first_cells(const Group& group) {
-    return {group.costs, group.condition.empty() ? "-" : group.condition, percent(group.rate, 1)};
+/// The columns of a group, then others.
+RowFields<Group> with_group(const RowFields<Group>& others) {
+    using Row = OptimalityRow;
+    RowFields<Group> fields{{"", first_of(&Row::costs), Shown::text("costs")},
+                            {"", first_of([](const Row& row) {
+                                 return row.scene->condition.empty() ? "-" : row.scene->condition;
+                             }),
+                             Shown::text("condition")},
+                            {"", first_of([](const Row& row) { return row.scene->false_positive_rate; }),
+                             Shown::percent("fp %", 1)}};
+    fields.insert(fields.end(), others.begin(), others.end());
+    return fields;
 }
 
 /// How near CLC's candidates are to the optimum.
 std::string candidates_table(std::span<const Group> groups) {
-    TextTable table({{"costs", true},
-                     {"condition", true},
-                     {"fp %"},
-                     {"scenes"},
-                     {"proven %"},
-                     {"feasible candidates %"},
-                     {"compared"},
-                     {"equal %"},
-                     {"median gap %"},
-                     {"p95 gap %"},
-                     {"success % opt / cand"},
-                     {"IoU % opt / cand"}});
-    for (const Group& group : groups) {
-        std::size_t proven = 0, candidates = 0, feasible = 0, equal = 0, best = 0, other = 0;
-        std::vector<double> gaps, optimum_ious, candidate_ious;
-        for (const OptimalityRow* row : group.rows) {
-            candidates += row->candidates;
-            feasible += row->feasible;
-            if (row->status == SolveStatus::optimal || row->status == SolveStatus::infeasible) ++proven;
-            const auto gap = row->gap();
-            if (!gap) continue;
-            gaps.push_back(*gap);
-            if (row->is_optimal(row->candidate)) ++equal;
-            if (is_success(row->optimum->category)) ++best;
-            if (is_success(row->candidate->category)) ++other;
-            optimum_ious.push_back(row->optimum->iou);
-            candidate_ious.push_back(row->candidate->iou);
-        }
-        const std::size_t compared = gaps.size();
-        const auto figure = [](const std::vector<double>& values, auto of) {
-            return values.empty() ? std::nullopt : std::optional<double>(of(values));
+    using Row = OptimalityRow;
+    /// The optimum and the candidate where both are compared.
+    const auto both = [](auto get) {
+        return [get](const Group& group) {
+            const auto of = [&](std::optional<JudgedLane> Row::*lane) {
+                return percent(group
+                                   .sample([&](const Row& row) -> std::optional<double> {
+                                       if (!row.gap()) return std::nullopt;
+                                       return get(*(row.*lane));
+                                   })
+                                   .mean(),
+                               1);
+            };
+            return of(&Row::optimum) + " / " + of(&Row::candidate);
         };
-        const auto p95 = [](const std::vector<double>& values) { return quantile(values, 0.95); };
-        const auto middle = [](const std::vector<double>& values) { return median(values); };
-        const auto average = [](const std::vector<double>& values) { return mean(values); };
-        std::vector<std::string> cells = first_cells(group);
-        for (std::string& cell : std::vector<std::string>{
-                 std::to_string(group.rows.size()), percent(share(proven, group.rows.size()), 1),
-                 percent(share(feasible, candidates), 1), std::to_string(compared),
-                 percent(share(equal, compared), 1), percent(figure(gaps, middle), 3),
-                 percent(figure(gaps, p95), 3),
-                 percent(share(best, compared), 1) + " / " + percent(share(other, compared), 1),
-                 percent(figure(optimum_ious, average), 1) + " / " +
-                     percent(figure(candidate_ious, average), 1)})
-            cells.push_back(std::move(cell));
-        table.add(std::move(cells));
-    }
-    return table.text();
-}
-
-/// What all lanes are worth where the optimum is proven.
-std::string quality_table(std::span<const Group> groups) {
-    std::vector<TextTable::Column> columns{
-        {"costs", true}, {"condition", true}, {"fp %"}, {"proven"}, {"optimum"}};
-    for (const Rival& rival : kRivals) columns.push_back({rival.name});
-    TextTable table(columns);
-    for (const Group& group : groups) {
-        Quality optimum;
-        std::array<Quality, kRivals.size()> rivals;
-        for (const OptimalityRow* row : group.rows) {
-            if (row->status != SolveStatus::optimal) continue;
-            optimum.add(row->optimum);
-            for (std::size_t k = 0; k < rivals.size(); ++k) rivals[k].add(row->*kRivals[k].lane);
-        }
-        std::vector<std::string> cells = first_cells(group);
-        cells.push_back(std::to_string(optimum.scenes));
-        cells.push_back(optimum.text());
-        for (const Quality& rival : rivals) cells.push_back(rival.text());
-        table.add(std::move(cells));
-    }
-    return table.text();
-}
-
-/// What a lane is worth by its gap to the optimum, of all conditions and rates.
-std::string gap_table(std::span<const Group> groups) {
-    struct Range {
-        const char* name;
-        double most;
     };
-    constexpr std::array kRanges{Range{"none", 0.0}, Range{"to 1 %", 0.01}, Range{"to 10 %", 0.1},
-                                 Range{"above", std::numeric_limits<double>::infinity()},
-                                 Range{"forbidden", std::numeric_limits<double>::quiet_NaN()}};
-    TextTable table({{"costs", true}, {"lane", true}, {"gap", true}, {"scenes"}, {"optimum"}, {"lane"}});
-    std::vector<std::string> names;
-    for (const Group& group : groups) {
-        if (names.empty() || names.back() != group.costs) names.push_back(group.costs);
-    }
-    for (const std::string& costs : names) {
-        for (const auto& [name, lane] : kRivals) {
-            std::array<Quality, kRanges.size()> of_optimum;
-            std::array<Quality, kRanges.size()> of_lane;
-            for (const Group& group : groups) {
-                if (group.costs != costs) continue;
-                for (const OptimalityRow* row : group.rows) {
-                    if (row->status != SolveStatus::optimal || !(row->*lane)) continue;
-                    const auto gap = row->gap_of(row->*lane);
-                    std::size_t place = kRanges.size() - 1;  // the rows forbid the lane
-                    if (gap && row->is_optimal(row->*lane)) {
-                        place = 0;
-                    } else if (gap) {
-                        place = 1;
-                        while (*gap > kRanges[place].most) ++place;
-                    }
-                    of_optimum[place].add(row->optimum);
-                    of_lane[place].add(row->*lane);
-                }
-            }
-            for (std::size_t place = 0; place < kRanges.size(); ++place) {
-                if (of_lane[place].scenes == 0) continue;
-                table.add({costs, name, kRanges[place].name, std::to_string(of_lane[place].scenes),
-                           of_optimum[place].text(), of_lane[place].text()});
-            }
-        }
-    }
-    return table.text();
+    const auto feasible_share = [](const Group& group) {
+        std::size_t feasible = 0, candidates = 0;
+        for (const Row* row : group.rows) feasible += row->feasible, candidates += row->candidates;
+        return share(feasible, candidates);
+    };
+    const auto is_decided = [](const Row& row) {
+        return row.is_proven() || row.status == SolveStatus::infeasible;
+    };
+    const auto success = both([](const JudgedLane& lane) { return is_success(lane.category); });
+    const auto iou = both([](const JudgedLane& lane) { return lane.iou; });
+    return row_table(groups, with_group({{"", &Group::size, Shown::number("scenes")},
+                                         {"", share_of(is_decided), Shown::percent("proven %", 1)},
+                                         {"", feasible_share, Shown::percent("feasible candidates %", 1)},
+                                         {"", count_of(&Row::gap), Shown::number("compared")},
+                                         {"", mean_of(&Row::is_equal), Shown::percent("equal %", 1)},
+                                         {"", median_of(&Row::gap), Shown::percent("median gap %", 3)},
+                                         {"", quantile_of(&Row::gap, 0.95), Shown::percent("p95 gap %", 3)},
+                                         {"", success, Shown::number("success % opt / cand")},
+                                         {"", iou, Shown::number("IoU % opt / cand")}}));
 }
 
-class OptimalityStudy : public Study {
+/// What all lanes are worth where the optimum is proven: usable / success / IoU in percent. No lane is
+/// neither usable nor a success.
+std::string quality_table(std::span<const Group> groups) {
+    using Row = OptimalityRow;
+    const auto quality = [](std::optional<JudgedLane> Row::*lane) {
+        return [lane](const Group& group) {
+            const auto mean = [&](auto get) {
+                return percent(group
+                                   .sample([&](const Row& row) -> std::optional<double> {
+                                       if (!row.is_proven()) return std::nullopt;
+                                       return row.*lane ? get(*(row.*lane)) : 0.0;
+                                   })
+                                   .mean(),
+                               1);
+            };
+            using Figure = std::optional<double>;
+            return fmt::format("{} / {} / {}",
+                               mean([](const JudgedLane& one) -> Figure { return one.usable; }),
+                               mean([](const JudgedLane& one) -> Figure { return is_success(one.category); }),
+                               mean([](const JudgedLane& one) -> Figure { return one.iou; }));
+        };
+    };
+    RowFields<Group> fields = with_group({{"", count_of(&Row::is_proven), Shown::number("proven")},
+                                          {"", quality(&Row::optimum), Shown::number("optimum")}});
+    for (const auto& [name, lane] : kRivals) fields.push_back({"", quality(lane), Shown::number(name)});
+    return row_table(groups, fields);
+}
+
+/// Each scene that counts (see `counts`) under each objective, in the order of the scenes, then of the
+/// objectives; the same with any number of threads. Throws InvalidInput where there is no such detector or
+/// the one that has to enumerate does not, and naming the scene where a lane has a lower objective than an
+/// optimum said to be proven or the independent checker rejects a lane graph.
+std::vector<OptimalityRow> optimality_rows(const SceneSet& set, const OptimalityOptions& options) {
+    const std::vector<AnnotatedScene>& scenes = set.scenes;
+    for (const std::string& name : {options.detector, options.beside}) {
+        if (!name.empty()) (void)find_method(name);
+    }
+    const std::size_t costs = options.costs.size();
+    const std::vector<std::size_t> starts = lap_starts(scenes);
+    std::vector<OptimalityRow> rows(scenes.size() * costs);
+    Progress progress("optimality", scenes.size());
+    oneapi::tbb::task_arena arena(
+        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(std::size_t{0}, starts.size() - 1, [&](std::size_t lap) {
+            Lap driven(set.tracks, options);
+            for (std::size_t i = starts[lap]; i < starts[lap + 1]; ++i) {
+                if (counts(scenes[i])) driven.drive(scenes[i], std::span(rows).subspan(i * costs, costs));
+                progress.advance();
+            }
+        });
+    });
+    std::erase_if(rows, [](const OptimalityRow& row) { return row.scene == nullptr; });
+    return rows;
+}
+
+class OptimalityStudy : public SceneStudy {
   public:
     OptimalityStudy()
-        : Study(
+        : SceneStudy(
               {"optimality",
                "how far from the optimum of RLD's objective are the lanes of graph searches, and does the "
                "optimum drive better?",
@@ -403,7 +409,7 @@ class OptimalityStudy : public Study {
                "a proven optimum. Nothing is timed."}) {}
 
     void add_options(CLI::App& command) override {
-        command.add_option("--scenes", scenes_, "*.scenes.jsonl")->required();
+        SceneStudy::add_options(command);
         command
             .add_option(
                 "--params", costs_,
@@ -429,66 +435,24 @@ class OptimalityStudy : public Study {
         add_threads_option(command, options_.threads, "nothing is timed");
     }
 
-    StudyResult run() override {
+    StudyResult measure(const SceneSet& set) override {
         options_.costs.clear();
         for (const std::string& name : costs_)
             options_.costs.push_back({name, ParameterSource{name == "default" ? "" : name, pairing_}.load()});
-        const std::vector<AnnotatedScene> scenes = read_scenes(scenes_);
-        TrackBoundariesByName tracks;
-        const std::filesystem::path boundaries = track_boundaries_path(scenes_);
-        if (std::filesystem::exists(boundaries)) tracks = read_track_boundaries(boundaries);
-        const std::vector<OptimalityRow> rows = optimality_rows(scenes, tracks, options_);
-        return study_result(optimality_table(rows), rows,
-                            [&](const OptimalityRow& row) { return to_json(row, options_); });
+        const std::vector<OptimalityRow> rows = optimality_rows(set, options_);
+        const std::vector<Group> groups = groups_of_rows(rows);
+        StudyResult result{candidates_table(groups) + "\n" + quality_table(groups)};
+        result.add_rows(rows, fields_of_file(options_));
+        return result;
     }
 
   private:
-    std::string scenes_;
     std::vector<std::string> costs_{"default"};
     std::string pairing_;
     OptimalityOptions options_;
 };
 
 }  // namespace
-
-std::optional<double> OptimalityRow::gap_of(const std::optional<JudgedLane>& lane) const {
-    if (status != SolveStatus::optimal || !lane || !lane->objective) return std::nullopt;
-    return relative_gap(*lane->objective, *optimum->objective);
-}
-
-bool OptimalityRow::is_optimal(const std::optional<JudgedLane>& lane) const {
-    return gap_of(lane) && *lane->objective - *optimum->objective <= kObjectiveTolerance;
-}
-
-std::vector<OptimalityRow> optimality_rows(std::span<const AnnotatedScene> scenes,
-                                           const TrackBoundariesByName& tracks,
-                                           const OptimalityOptions& options) {
-    for (const std::string& name : {options.detector, options.beside}) {
-        if (!name.empty()) (void)find_method(name);
-    }
-    const std::size_t costs = options.costs.size();
-    const std::vector<std::size_t> starts = lap_starts(scenes);
-    std::vector<OptimalityRow> rows(scenes.size() * costs);
-    Progress progress("optimality", scenes.size());
-    oneapi::tbb::task_arena arena(
-        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
-    arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, starts.size() - 1, [&](std::size_t lap) {
-            Lap driven(tracks, options);
-            for (std::size_t i = starts[lap]; i < starts[lap + 1]; ++i) {
-                if (counts(scenes[i])) driven.drive(scenes[i], std::span(rows).subspan(i * costs, costs));
-                progress.advance();
-            }
-        });
-    });
-    std::erase_if(rows, [](const OptimalityRow& row) { return row.scene == nullptr; });
-    return rows;
-}
-
-std::string optimality_table(std::span<const OptimalityRow> rows) {
-    const std::vector<Group> groups = groups_of(rows);
-    return candidates_table(groups) + "\n" + quality_table(groups) + "\n" + gap_table(groups);
-}
 
 std::unique_ptr<Study> make_optimality_study() {
     return std::make_unique<OptimalityStudy>();

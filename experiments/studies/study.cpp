@@ -1,34 +1,32 @@
 #include "experiments/studies/study.hpp"
 
-#include "experiments/studies/anytime.hpp"
-#include "experiments/studies/backends.hpp"
-#include "experiments/studies/confidence_and_colour.hpp"
-#include "experiments/studies/deadlines.hpp"
-#include "experiments/studies/features.hpp"
-#include "experiments/studies/formulations.hpp"
-#include "experiments/studies/front_beam.hpp"
-#include "experiments/studies/growth.hpp"
-#include "experiments/studies/memory.hpp"
-#include "experiments/studies/noise.hpp"
-#include "experiments/studies/optimality.hpp"
-#include "experiments/studies/relaxations.hpp"
+#include "evaluation/formats/scene_file.hpp"
+
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
 
 namespace conelane::experiments {
 
+void SceneStudy::add_options(CLI::App& command) {
+    command
+        .add_option("--scenes", scenes_, "*.scenes.jsonl; *.tracks.json beside it has the boundaries, if any")
+        ->required();
+}
+
+StudyResult SceneStudy::run() {
+    SceneSet set{read_scenes(scenes_), {}};
+    const std::filesystem::path boundaries = track_boundaries_path(scenes_);
+    if (std::filesystem::exists(boundaries)) set.tracks = read_track_boundaries(boundaries);
+    return measure(set);
+}
+
 std::vector<std::unique_ptr<Study>> make_studies() {
     std::vector<std::unique_ptr<Study>> studies;
-    studies.push_back(make_optimality_study());
-    studies.push_back(make_backends_study());
-    studies.push_back(make_anytime_study());
-    studies.push_back(make_growth_study());
-    studies.push_back(make_features_study());
-    studies.push_back(make_formulations_study());
-    studies.push_back(make_relaxations_study());
-    studies.push_back(make_confidence_and_color_study());
-    studies.push_back(make_front_beam_study());
-    studies.push_back(make_deadlines_study());
-    studies.push_back(make_memory_study());
-    studies.push_back(make_noise_study());
+    for (const auto make : {make_optimality_study, make_backends_study, make_anytime_study, make_growth_study,
+                            make_features_study, make_formulations_study, make_relaxations_study,
+                            make_confidence_and_color_study, make_front_beam_study, make_noise_study})
+        studies.push_back(make());
     return studies;
 }
 

@@ -1,14 +1,13 @@
 #pragma once
 
+#include "evaluation/formats/scene_set.hpp"
 #include "experiments/comparison/answer_errors.hpp"
+#include "experiments/studies/row_fields.hpp"
 
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace CLI {
 class App;
@@ -24,19 +23,25 @@ struct StudyDescription {
 };
 
 struct StudyResult {
-    std::string table;                         ///< for a terminal; ends with a line feed
-    std::vector<nlohmann::ordered_json> rows;  ///< for a file, an object each
-    AnswerErrors errors = {};                  ///< if answers of status error are counted instead of thrown
+    std::string table = {};       ///< for a terminal; ends with a line feed
+    std::vector<Json> rows = {};  ///< for a file, an object each
+    AnswerErrors errors = {};     ///< if answers of status error are counted instead of thrown
+
+    template <typename Rows, typename Row>
+    void add_rows(const Rows& all, const RowFields<Row>& fields) {
+        for (const Row& row : all) rows.push_back(row_json(row, fields));
+    }
 };
 
-template <typename Rows, typename ToJson>
-[[nodiscard]] StudyResult study_result(std::string table, const Rows& rows, const ToJson& to_json) {
-    StudyResult result{std::move(table), {}, {}};
-    for (const auto& row : rows) result.rows.push_back(to_json(row));
+/// The same rows in file and table.
+template <typename Rows, typename Row>
+[[nodiscard]] StudyResult study_result(const Rows& rows, const RowFields<Row>& fields) {
+    StudyResult result{row_table(rows, fields)};
+    result.add_rows(rows, fields);
     return result;
 }
 
-/// One measured question. Each study is a file of this folder with a line in studies().
+/// One measured question. Each study is a file of this folder with a line in make_studies().
 class Study {
   public:
     explicit Study(const StudyDescription& description) : description_(description) {}
@@ -56,7 +61,30 @@ class Study {
     StudyDescription description_;
 };
 
+/// A study of the scenes of a file. What a derived class adds to `add_options` comes after --scenes.
+class SceneStudy : public Study {
+  public:
+    using Study::Study;
+    void add_options(CLI::App& command) override;
+    [[nodiscard]] StudyResult run() final;
+    [[nodiscard]] virtual StudyResult measure(const SceneSet& set) = 0;
+
+  private:
+    std::string scenes_;
+};
+
 /// All studies, in the order in which they are listed.
 [[nodiscard]] std::vector<std::unique_ptr<Study>> make_studies();
+
+[[nodiscard]] std::unique_ptr<Study> make_anytime_study();
+[[nodiscard]] std::unique_ptr<Study> make_backends_study();
+[[nodiscard]] std::unique_ptr<Study> make_confidence_and_color_study();
+[[nodiscard]] std::unique_ptr<Study> make_features_study();
+[[nodiscard]] std::unique_ptr<Study> make_formulations_study();
+[[nodiscard]] std::unique_ptr<Study> make_front_beam_study();
+[[nodiscard]] std::unique_ptr<Study> make_growth_study();
+[[nodiscard]] std::unique_ptr<Study> make_noise_study();
+[[nodiscard]] std::unique_ptr<Study> make_optimality_study();
+[[nodiscard]] std::unique_ptr<Study> make_relaxations_study();
 
 }  // namespace conelane::experiments

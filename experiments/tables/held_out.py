@@ -79,12 +79,12 @@ def families_of(folds, tracks):
     return family_of
 
 
-def twelve_rows(folder, kinds=("default", "shape", "learned")):
-    """How often a lane of 12 cones is accurate, by costs of RLD (or another kind of answer) and rate, over all families. Scenes without
-    annotated boundaries have no accuracy."""
+def twelve_rows(folder):
+    """How often a lane of 12 cones is accurate, by costs of RLD and rate, over all families. Scenes without annotated boundaries have no
+    accuracy."""
     right, scenes = defaultdict(float), defaultdict(int)
     for name in sorted(os.listdir(folder)):
-        if not name.endswith(tuple(f".{kind}.json" for kind in kinds)):
+        if not name.endswith((".default.json", ".shape.json", ".learned.json")):
             continue
         for line in lines_of(os.path.join(folder, name)):
             if line.get("accurate_share") is not None:
@@ -93,14 +93,6 @@ def twelve_rows(folder, kinds=("default", "shape", "learned")):
                 scenes[cell] += line["accuracy_scenes"]
     return [{"costs": costs, "rate": rate, "scenes": scenes[costs, rate], "accurate": rounded(right[costs, rate] / scenes[costs, rate])}
             for costs, rate in sorted(right)]
-
-
-def judge_rows(folder):
-    """The rows of course_judge.py, each family, and all together."""
-    rows = read_json(os.path.join(folder, "course_judge.json"), list)
-    return rows + [{"family": "all", "rate": rate, "scenes": sum(row["scenes"] for row in cells)} |
-                   {key: rounded(over(cells, key)) for key in ("expected", "attained")} |
-                   {key: sum(row[key] for row in cells) for key in ("start", "inside", "ends")} for (rate,), cells in sorted(grouped(rows, ("rate",)).items())]
 
 
 def collect(folder):
@@ -126,9 +118,7 @@ def collect(folder):
         stored["runs"][name] = provenance(record)
         stored["races"] += [{"run": name} | row for row in race_rows(record)]
     stored["twelve"] = twelve_rows(os.path.join(folder, "twelve"))
-    stored["judge"] = judge_rows(os.path.join(folder, "twelve"))
-    stored["judge_checks"] = twelve_rows(os.path.join(folder, "twelve"), ("judge", "truth"))
-    stored["runs"]["twelve"] = stored["runs"]["judge"] = version_of(os.path.join(folder, "twelve", "version.txt"))
+    stored["runs"]["twelve"] = version_of(os.path.join(folder, "twelve", "version.txt"))
     return stored
 
 
@@ -169,29 +159,21 @@ def lane_table(first, rows):
                  [[label] + [text(condition, rate) for condition in CONDITIONS for rate in RATES] for label, text in rows])
 
 
-def quality_rows(figures, labels, distance):
-    return [(label, lambda condition, rate, method=method: both(figures.row(None, method, condition, rate, distance))) for method, label in labels]
+def methods_table(figures, title, names, cell):
+    """A row for each method that has figures; `cell` is of method, condition and rate."""
+    return lane_table(title, [(label, lambda condition, rate, method=method: cell(method, condition, rate)) for method, label in figures.there(names)])
 
 
 def usable_table(figures):
-    return lane_table("usable, %", [
-        (label, lambda condition, rate, method=method: percent(figures.row(None, method, condition, rate, 30.0)["usable"]))
-        for method, label in figures.there(README_METHODS)])
+    return methods_table(figures, "usable, %", README_METHODS, lambda *of: percent(figures.row(None, *of, 30.0)["usable"]))
 
 
 def quality_table(figures, distance):
-    return lane_table("usable / IoU, %", quality_rows(figures, figures.there(METHODS), distance))
+    return methods_table(figures, "usable / IoU, %", METHODS, lambda *of: both(figures.row(None, *of, distance)))
 
 
 def designed_table(figures):
-    return lane_table("usable / IoU, %", [
-        (label, lambda condition, rate, method=method: both(figures.part("designed", None, method, condition, rate, {30.0})))
-        for method, label in figures.there(METHODS)])
-
-
-def peer_table(figures):
-    return lane_table("usable / IoU, %", quality_rows(figures, figures.there(
-        {"ft-fsd-path-planning": "ft-fsd-path-planning, sorting of cones", "front": "`front`"}), 30.0))
+    return methods_table(figures, "usable / IoU, %", METHODS, lambda *of: both(figures.part("designed", None, *of, {30.0})))
 
 
 def ordinary_table(figures):
@@ -306,9 +288,8 @@ def twelve_table(figures):
     return table(["accurate, %", "0 %", "16.7 % (1 : 5)", "50 % (1 : 1)"], lines + [["RLD paper (its generated scenes)", "", "96.4", "above 90"]])
 
 
-def judge_table(figures):
-    """The judge of course_judge.py: expected and attained, and where it errs, by family; and what all checks of `accurate` leave."""
-    stored = figures.stored
+def judge_table(stored):
+    """The record of a judge: expected and attained, and where it errs, by family; and what all checks of `accurate` leave."""
     rates = sorted({row["rate"] for row in stored.get("judge", [])})
     lines = []
     for family in ("fsd", "epfl", "eufs", "events", "fsai_sim", "all"):
@@ -339,7 +320,6 @@ TABLES = {
     "races by measure": race_measure_table,
     "ten laps": ten_laps_table,
     "twelve cones": twelve_table,
-    "judge of twelve cones": judge_table,
 }
 
 

@@ -6,7 +6,7 @@ import random
 import re
 from statistics import fmean
 
-from cells import UNKNOWN, columns_table, grouped, lines_of, mean, median, pair, percent, provenance, quantile, rounded, share, table
+from cells import UNKNOWN, columns_table, grouped, is_close, lines_of, mean, median, pair, percent, provenance, quantile, rounded, share, table
 
 RATES = [0.0, 0.1, 0.3, 0.5]
 LANES = ["beam", "candidate", "choice", "beside"]
@@ -83,7 +83,7 @@ def anytime_rows(lines):
     rows = []
     for (limit,), cell in sorted(grouped(lines, ("limit_ms",)).items()):
         unproven = [line for line in cell if not line["proven"]]
-        close = [line for line in unproven if "objective" in line and line["objective"] - line["best_known"] <= 0.01 * max(1.0, abs(line["best_known"]))]
+        close = list(filter(is_close, unproven))
         gaps = [line["gap"] for line in unproven if "gap" in line]
         rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": len(close),
                      "gap": rounded(median(gaps)) if gaps else None})

@@ -4,7 +4,8 @@
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/world/cone_index.hpp"
+#include "evaluation/world/ground_truth.hpp"
+#include "experiments/progress/parallel.hpp"
 #include "experiments/progress/progress.hpp"
 
 #include <algorithm>
@@ -16,9 +17,6 @@
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace conelane::experiments {
 namespace {
@@ -64,13 +62,10 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
     }
     std::vector<CandidateList> lists(counted.size());
     Progress progress("candidates", options.show_progress ? counted.size() : 0);
-    oneapi::tbb::enumerable_thread_specific<CandidateSearch> searches(
-        [&] { return CandidateSearch(options.search); });
-    oneapi::tbb::task_arena arena(static_cast<int>(options.threads));
-    arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, counted.size(), [&](std::size_t i) {
+    in_parallel(
+        counted.size(), options.threads, [&] { return CandidateSearch(options.search); },
+        [&](CandidateSearch& search, std::size_t i) {
             const AnnotatedScene& scene = *counted[i];
-            CandidateSearch& search = searches.local();
             CandidateSearch::Request request;
             request.with_features = true;
             (void)search.run(scene.scene, request);
@@ -96,7 +91,6 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             }
             progress.advance();
         });
-    });
     return lists;
 }
 

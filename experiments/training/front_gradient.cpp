@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace conelane::experiments {
 namespace {
@@ -12,18 +13,6 @@ using Units = std::array<float, kFrontUnits>;
 
 CONELANE_SIMD void add_scaled(float factor, const float* from, float* to) {
     for (std::size_t unit = 0; unit < kFrontUnits; ++unit) to[unit] += factor * from[unit];
-}
-
-template <typename Weights, typename Block>
-void visit(Weights& weights, const Block& use) {
-    for (auto* network :
-         {&weights.extend, &weights.stop, &weights.start, &weights.rank, &weights.usable, &weights.right}) {
-        use(std::span(network->hidden));
-        use(std::span(network->hidden_bias));
-        use(std::span(network->output));
-        use(std::span(network->linear));
-        use(std::span(&network->output_bias, 1));
-    }
 }
 
 }  // namespace
@@ -48,20 +37,6 @@ void add_derivatives(const FrontNetworkWeights& network, std::span<const float> 
         derivatives.linear[i] += factor * inputs[i];
     }
     derivatives.output_bias += factor;
-}
-
-void for_each_block(FrontWeights& weights, const std::function<void(std::span<float>)>& use) {
-    visit(weights, use);
-}
-
-void for_each_block(const FrontWeights& weights, const std::function<void(std::span<const float>)>& use) {
-    visit(weights, use);
-}
-
-std::size_t parameter_count(const FrontWeights& weights) {
-    std::size_t count = 0;
-    for_each_block(weights, [&](std::span<const float> block) { count += block.size(); });
-    return count;
 }
 
 void add(FrontWeights& a, const FrontWeights& b) {

@@ -2,9 +2,10 @@
 
 #include "graph_search/front/front_weights.hpp"
 
+#include <concepts>
 #include <cstddef>
-#include <functional>
 #include <span>
+#include <type_traits>
 
 namespace conelane::experiments {
 
@@ -13,11 +14,14 @@ namespace conelane::experiments {
 void add_derivatives(const FrontNetworkWeights& network, std::span<const float> inputs, float factor,
                      FrontNetworkWeights& derivatives);
 
-/// All numbers of the networks, block by block, always in the same order.
-void for_each_block(FrontWeights& weights, const std::function<void(std::span<float>)>& use);
-void for_each_block(const FrontWeights& weights, const std::function<void(std::span<const float>)>& use);
-/// Their number.
-[[nodiscard]] std::size_t parameter_count(const FrontWeights& weights);
+/// Calls `use` with all numbers of the networks, block by block, always in the same order. `weights`: a
+/// FrontWeights.
+template <typename Weights, typename Use>
+requires std::derived_from<std::remove_const_t<Weights>, FrontWeightSet>
+void for_each_block(Weights& weights, const Use& use) {
+    for_each_weights_list(weights, [&](const FrontNetworkPlace& /*place*/, const char* /*key*/, auto numbers,
+                                       std::size_t /*each*/) { use(numbers); });
+}
 
 /// a += b
 void add(FrontWeights& a, const FrontWeights& b);

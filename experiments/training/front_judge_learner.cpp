@@ -1,7 +1,6 @@
 #include "experiments/training/front_judge_learner.hpp"
 
 #include "experiments/training/front_gradient.hpp"
-#include "experiments/training/softmax.hpp"
 #include "graph_search/front/front_detector.hpp"
 
 #include <algorithm>
@@ -21,7 +20,7 @@ double cross_entropy(double probability, bool happened) {
 FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
                                                  const TrackBoundaries& boundaries,
                                                  const FrontWeights& weights, FrontCost& cost,
-                                                 FrontJudge& judge, const FrontJudgeLossOptions& options,
+                                                 FrontJudge& judge, const FrontLossOptions& options,
                                                  FrontWeights* derivatives) {
     Loss loss;
     loss.risk = options.risk.worst();
@@ -31,7 +30,7 @@ FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
     risks_.clear();
     for (const FrontTruth::Cones& lane : lanes_)
         risks_.push_back(truth_.risk(lane, boundaries, options.risk));
-    judge.look(front_, contenders_);
+    judge.compare(front_, contenders_);
     add_rank(weights, judge, options, loss, derivatives);
     const std::optional<std::size_t> chosen = answered(judge);
     if (!chosen) return loss;
@@ -51,11 +50,11 @@ FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
 }
 
 double FrontJudgeLearner::judge_noise(const Scene& scene, const FrontWeights& weights, FrontCost& cost,
-                                      FrontJudge& judge, const FrontJudgeLossOptions& options,
+                                      FrontJudge& judge, const FrontLossOptions& options,
                                       FrontWeights& derivatives) {
     search(scene, cost, options);
     if (contenders_.empty()) return 0.0;
-    judge.look(front_, contenders_);
+    judge.compare(front_, contenders_);
     const std::optional<std::size_t> chosen = answered(judge);
     if (!chosen) return 0.0;
     const double confidence = judge.confidence(*chosen);
@@ -67,7 +66,7 @@ double FrontJudgeLearner::judge_noise(const Scene& scene, const FrontWeights& we
 }
 
 /// Sets the contenders and their lanes, the one with the highest score first.
-void FrontJudgeLearner::search(const Scene& scene, FrontCost& cost, const FrontJudgeLossOptions& options) {
+void FrontJudgeLearner::search(const Scene& scene, FrontCost& cost, const FrontLossOptions& options) {
     front_.begin(scene, cost, options.search);
     SearchBudget unlimited;
     front_.run(unlimited);
@@ -94,24 +93,17 @@ std::optional<std::size_t> FrontJudgeLearner::answered(const FrontJudge& judge) 
 }
 
 void FrontJudgeLearner::add_rank(const FrontWeights& weights, const FrontJudge& judge,
-                                 const FrontJudgeLossOptions& options, Loss& loss,
+                                 const FrontLossOptions& options, Loss& loss,
                                  FrontWeights* derivatives) const {
-    std::vector<double> probabilities;
-    std::vector<double> wanted;
-    for (std::size_t i = 0; i < contenders_.size(); ++i) {
-        probabilities.push_back(contenders_[i].score + judge.rank(i));
-        wanted.push_back(-risks_[i] / options.risk_scale);
-    }
-    to_probabilities(probabilities);
-    to_probabilities(wanted);
-    double expected = 0.0;
-    for (std::size_t i = 0; i < contenders_.size(); ++i) expected += probabilities[i] * risks_[i];
-    loss.sum += options.minimum_risk * expected;
+    std::vector<double> scores;
+    for (std::size_t i = 0; i < contenders_.size(); ++i)
+        scores.push_back(contenders_[i].score + judge.rank(i));
+    const ListLoss list = list_loss(std::move(scores), risks_, options);
+    loss.sum += options.minimum_risk * list.expected_risk;
     if (derivatives == nullptr) return;
     for (std::size_t i = 0; i < contenders_.size(); ++i) {
-        const double factor = options.minimum_risk * probabilities[i] * (risks_[i] - expected) +
-                              options.listwise * (probabilities[i] - wanted[i]);
-        add_derivatives(weights.rank, judge.features(i), static_cast<float>(factor), derivatives->rank);
+        add_derivatives(weights.rank, judge.features(i), static_cast<float>(list.by_score[i]),
+                        derivatives->rank);
     }
 }
 

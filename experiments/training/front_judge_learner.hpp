@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/training/front_truth.hpp"
+#include "experiments/training/front_learner.hpp"
 #include "graph_search/front/front_judge.hpp"
 
 #include <cstddef>
@@ -8,14 +8,6 @@
 #include <vector>
 
 namespace conelane::experiments {
-
-struct FrontJudgeLossOptions {
-    FrontSearchOptions search;
-    FrontRiskOptions risk;
-    double minimum_risk = 3.0;  ///< weight of the expected risk
-    double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
-    double risk_scale = 0.05;   ///< a lane with this much more risk should be e times less likely
-};
 
 /// The loss of FrontJudge in one scene and its derivatives: of `rank` as FrontLearner has it for the lanes of
 /// a search, of `usable` and `right` the cross-entropy for the answered lane. FrontCost stays unchanged.
@@ -35,18 +27,18 @@ class FrontJudgeLearner {
 
     /// `derivatives` absent: only the loss.
     Loss judge(const AnnotatedScene& scene, const TrackBoundaries& boundaries, const FrontWeights& weights,
-               FrontCost& cost, FrontJudge& judge, const FrontJudgeLossOptions& options,
+               FrontCost& cost, FrontJudge& judge, const FrontLossOptions& options,
                FrontWeights* derivatives);
 
     /// The same for a scene of false cones only, where no lane is usable and no first pair right: the
     /// cross-entropy of `usable`, and of `right` for the first pair. 0 if no lane is found.
     double judge_noise(const Scene& scene, const FrontWeights& weights, FrontCost& cost, FrontJudge& judge,
-                       const FrontJudgeLossOptions& options, FrontWeights& derivatives);
+                       const FrontLossOptions& options, FrontWeights& derivatives);
 
   private:
-    void search(const Scene& scene, FrontCost& cost, const FrontJudgeLossOptions& options);
+    void search(const Scene& scene, FrontCost& cost, const FrontLossOptions& options);
     [[nodiscard]] std::optional<std::size_t> answered(const FrontJudge& judge) const;
-    void add_rank(const FrontWeights& weights, const FrontJudge& judge, const FrontJudgeLossOptions& options,
+    void add_rank(const FrontWeights& weights, const FrontJudge& judge, const FrontLossOptions& options,
                   Loss& loss, FrontWeights* derivatives) const;
     void add_right(const TrackBoundaries& boundaries, const FrontWeights& weights, const FrontJudge& judge,
                    std::size_t chosen, Loss& loss, FrontWeights* derivatives) const;

@@ -1,7 +1,7 @@
 #include "experiments/training/front_learner.hpp"
 
 #include "experiments/training/front_gradient.hpp"
-#include "experiments/training/softmax.hpp"
+#include "experiments/training/training_loop.hpp"
 #include "graph_search/front/front_detector.hpp"
 
 #include <algorithm>
@@ -16,6 +16,21 @@ constexpr std::size_t kNone = FrontSearch::kNone;
 constexpr double kMinFactor = 1e-4;
 
 }  // namespace
+
+ListLoss list_loss(std::vector<double> scores, std::span<const double> risks,
+                   const FrontLossOptions& options) {
+    std::vector<double> wanted;
+    for (const double risk : risks) wanted.push_back(-risk / options.risk_scale);
+    to_probabilities(scores);
+    to_probabilities(wanted);
+    ListLoss loss;
+    for (std::size_t i = 0; i < scores.size(); ++i) loss.expected_risk += scores[i] * risks[i];
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+        loss.by_score.push_back(options.minimum_risk * scores[i] * (risks[i] - loss.expected_risk) +
+                                options.listwise * (scores[i] - wanted[i]));
+    }
+    return loss;
+}
 
 std::size_t FrontLearner::true_start() const {
     const FrontStarts& starts = front_.starts();
@@ -218,31 +233,23 @@ std::vector<FrontSearch::Finished> FrontLearner::listed_lanes(const Follow& trut
     return lanes;
 }
 
-/// Minimum risk over the listed lanes, and the cross-entropy between their probabilities and those that
-/// follow from their risks.
 void FrontLearner::add_list_loss(std::span<const FrontSearch::Finished> lanes,
                                  const TrackBoundaries& boundaries, const FrontLossOptions& options,
                                  Loss& loss) {
     std::vector<double> risks;
-    std::vector<double> probabilities;
-    std::vector<double> wanted;
+    std::vector<double> scores;
     for (const FrontSearch::Finished& lane : lanes) {
         front_.cones(lane.parent, cones_);
         even_far_ends(front_.map(), cones_);
         risks.push_back(truth_.risk(cones_, boundaries, options.risk));
-        probabilities.push_back(lane.score);
-        wanted.push_back(-risks.back() / options.risk_scale);
+        scores.push_back(lane.score);
     }
     loss.risk = risks.front();
-    to_probabilities(probabilities);
-    to_probabilities(wanted);
-    double expected = 0.0;
-    for (std::size_t i = 0; i < lanes.size(); ++i) expected += probabilities[i] * risks[i];
-    loss.sum += options.minimum_risk * expected;
+    const ListLoss list = list_loss(std::move(scores), risks, options);
+    loss.sum += options.minimum_risk * list.expected_risk;
     ++loss.decisions;
     for (std::size_t i = 0; i < lanes.size(); ++i) {
-        const double factor = options.minimum_risk * probabilities[i] * (risks[i] - expected) +
-                              options.listwise * (probabilities[i] - wanted[i]);
+        const double factor = list.by_score[i];
         if (std::abs(factor) <= kMinFactor) continue;
         coefficients_.resize(std::max(coefficients_.size(), lanes[i].parent + 1), 0.0);
         coefficients_[lanes[i].parent] += factor;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "evaluation/world/annotated_scene.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "evaluation/world/track.hpp"
 #include "experiments/training/front_truth.hpp"
 #include "graph_search/front/front_search.hpp"
 
@@ -12,15 +12,25 @@
 
 namespace conelane::experiments {
 
+/// The weights are explained by option_fields(FrontTrainingOptions&).
 struct FrontLossOptions {
     FrontSearchOptions search;
-    std::size_t listed = 20;    ///< number of best lanes that the loss of a whole lane compares
-    double fall_out = 1.0;      ///< weight of the cross-entropy where the beam loses the true lane
-    double minimum_risk = 3.0;  ///< weight of the expected risk
-    double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
-    double risk_scale = 0.05;   ///< a lane with this much more risk should be e times less likely
+    std::size_t listed = 20;  ///< number of best lanes that the loss of a whole lane compares
+    double fall_out = 1.0;
+    double minimum_risk = 3.0;
+    double listwise = 0.5;
+    double risk_scale = 0.05;  ///< a lane with this much more risk should be e times less likely
     FrontRiskOptions risk;
 };
+
+/// The losses over the lanes of a list: minimum risk, and the cross-entropy between their probabilities and
+/// those that follow from their risks.
+struct ListLoss {
+    double expected_risk = 0.0;
+    std::vector<double> by_score;  ///< derivatives of the weighted losses by each score
+};
+[[nodiscard]] ListLoss list_loss(std::vector<double> scores, std::span<const double> risks,
+                                 const FrontLossOptions& options);
 
 /// The loss of the true lane in one scene and its derivatives. Keeps memory from scene to scene; one object
 /// serves one thread.

@@ -1,15 +1,17 @@
 #include "experiments/training/front_scenes.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/course.hpp"
-#include "evaluation/world/half_disc.hpp"
+#include "evaluation/world/scene_draws.hpp"
 #include "evaluation/world/scene_generation.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <unordered_map>
@@ -145,9 +147,9 @@ Track changed(const Track& track, const Warp& warp, bool backwards, bool respace
         if (backwards) std::ranges::reverse(sides[side]);
         if (backwards) std::ranges::reverse(colors[side]);
         if (spacing != 1.0) {
-            std::vector<Point> anew = respaced(sides[side], track.closed, spacing, random);
-            if (anew.size() >= 3) {
-                sides[side] = std::move(anew);
+            std::vector<Point> moved = respaced(sides[side], track.closed, spacing, random);
+            if (moved.size() >= 3) {
+                sides[side] = std::move(moved);
                 colors[side].assign(sides[side].size(), ConeColor::unknown);
             }
         }
@@ -284,6 +286,65 @@ void add_false_positives(Scene& scene, long count, double range_m, Random& rando
 }
 
 }  // namespace
+
+OptionFields draw_fields(DrawnTrainingOptions& options, bool with_noise) {
+    FrontSceneOptions& scenes = options.scenes;
+    OptionFields fields{
+        {"--seed", "seed", &options.seed, kAny, "seed of all random draws"},
+        {"--draws", "draws_per_step", &options.draws_per_step, kCount, "changed courses in each step"},
+        {"--scenes-a-draw", "scenes.per_draw", &scenes.scenes_per_draw, kCount,
+         "scenes of each changed course"},
+        {"!--no-warp", "scenes.warp", &scenes.warp, kAny, "courses keep their shape"},
+        {"!--no-respacing", "scenes.respace", &scenes.respace, kAny,
+         "cones stay where they are on their boundary"},
+        {"!--no-disturbance", "scenes.disturb", &scenes.disturb, kAny,
+         "no noise, missed cones and pose error"},
+        {"!--no-short-sight", "scenes.short_sight", &scenes.short_sight, kAny,
+         "true cones are seen as far as false ones"},
+        {"--other-course", "scenes.other_course", &scenes.other_course, kAny,
+         "a second course lies beside the first in a third of the draws"},
+        {"--colored-share", "scenes.colored_share", &scenes.colored_share, kShare,
+         "share of the draws whose cones have colours"}};
+    if (with_noise) {
+        fields.insert(fields.end(),
+                      {{"--noise-share", "scenes.noise_share", &scenes.noise_share, kShare,
+                        "share of the draws that have a scene of false cones alone, for the judge"},
+                       {"--noise-cones", "scenes.noise_cones", &scenes.noise_cones, kCount,
+                        "fewest and most cones of such a scene"},
+                       {"--noise-ranges", "scenes.noise_ranges_m", &scenes.noise_ranges_m, kPositive,
+                        "smallest and largest radius of the half disc that holds them [m]"}});
+    }
+    fields.push_back({"--highest-rate", "scenes.highest_rate", &scenes.highest_rate, kShare,
+                      "share of false positives is drawn up to this"});
+    return fields;
+}
+
+OptionFields run_fields(DrawnTrainingOptions& options, const char* report_option) {
+    return {{report_option, "", &options.report_every, kCount,
+             "steps between two lines of output, and figures if tracks are held out"},
+            {"--checkpoint", "", &options.checkpoint, kAny,
+             "file of the training's state, from which a stopped training resumes"},
+            {"--checkpoint-every", "", &options.checkpoint_every, kCount, "steps between two writes of it"},
+            {"--threads", "", &options.threads, {1.0, 1024.0}, "the weights are the same with any number"}};
+}
+
+LearningLoop loop_of(const DrawnTrainingOptions& options, double smallest_deviation, std::string identity,
+                     bool reports) {
+    return {.smallest_deviation = smallest_deviation,
+            .threads = options.threads,
+            .report_every = reports ? options.report_every : 0,
+            .identity = std::move(identity),
+            .checkpoint = options.checkpoint,
+            .checkpoint_every = options.checkpoint_every};
+}
+
+std::vector<Track> annotated_tracks(const std::vector<std::string>& specs) {
+    std::vector<Track> tracks;
+    for (const std::string& spec : specs)
+        std::ranges::move(load_tracks_aloud(spec), std::back_inserter(tracks));
+    std::erase_if(tracks, [](const Track& track) { return track.left.empty() || track.right.empty(); });
+    return tracks;
+}
 
 FrontScenes::FrontScenes(std::vector<Track> courses, const FrontSceneOptions& options, std::uint64_t seed)
     : options_(options), seed_(seed) {

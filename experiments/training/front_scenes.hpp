@@ -2,7 +2,8 @@
 
 #include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/track.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "experiments/training/option_field.hpp"
+#include "experiments/training/training_loop.hpp"
 
 #include <array>
 #include <cstddef>
@@ -12,22 +13,40 @@
 
 namespace conelane::experiments {
 
-/// Which of the changes to a course are made; for ablations.
+/// Which of the changes to a course are made; see option_fields.
 struct FrontSceneOptions {
-    std::size_t scenes_per_draw = 4;  ///< from one changed course
-    bool warp = true;                 ///< scale and swirl
+    std::size_t scenes_per_draw = 4;
+    bool warp = true;  ///< scale and swirl
     bool respace = true;
-    bool disturb = true;      ///< noise, missed cones and pose error
-    bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
-    /// A second course beside it, whose cones are false: better among parallel legs, worse elsewhere.
+    bool disturb = true;
+    bool short_sight = true;
     bool other_course = false;
     double colored_share = 0.5;  ///< of the draws that show colors, at any rates of wrong and unknown ones
-    /// Share of the draws that have a scene of false cones alone, for the judge.
     double noise_share = 0.2;
-    std::array<std::size_t, 2> noise_cones{4, 60};     ///< fewest and most of such a scene
-    std::array<double, 2> noise_ranges_m{15.0, 55.0};  ///< of the half disc that holds them
+    std::array<std::size_t, 2> noise_cones{4, 60};
+    std::array<double, 2> noise_ranges_m{15.0, 55.0};
     double highest_rate = 0.7;  ///< some views reach it if false positives persist at a rate of 0.5
 };
+
+/// Options of every training on such scenes.
+struct DrawnTrainingOptions {
+    FrontSceneOptions scenes;
+    std::size_t draws_per_step = 8;
+    std::uint64_t seed = 0;
+    std::size_t report_every = 100;  ///< steps
+    unsigned threads = 1;            ///< the result is the same with any number
+    std::string checkpoint;          ///< file to resume from, written regularly; none if empty
+    std::size_t checkpoint_every = 200;
+};
+/// Of the draws: the first ones of a record. `with_noise`: with scenes of false cones alone.
+[[nodiscard]] OptionFields draw_fields(DrawnTrainingOptions& options, bool with_noise);
+/// How it is run; no result depends on these. `report_option`: its name.
+[[nodiscard]] OptionFields run_fields(DrawnTrainingOptions& options, const char* report_option);
+[[nodiscard]] LearningLoop loop_of(const DrawnTrainingOptions& options, double smallest_deviation,
+                                   std::string identity, bool reports);
+
+/// The tracks of SPECs of load_tracks, without those that have no annotated boundaries.
+[[nodiscard]] std::vector<Track> annotated_tracks(const std::vector<std::string>& specs);
 
 /// Scenes for training, drawn from whole courses. Each draw takes a course, drives it in a random direction,
 /// may mirror it, scales it, bends it by a smooth swirl, places its cones again along its boundaries and adds

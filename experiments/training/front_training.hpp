@@ -3,11 +3,9 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/scoring/calibration.hpp"
 #include "experiments/training/front_judge_learner.hpp"
-#include "experiments/training/front_learner.hpp"
 #include "experiments/training/front_scenes.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,41 +13,39 @@
 
 namespace conelane::experiments {
 
-struct FrontTrainingOptions {
-    FrontSceneOptions scenes;
+/// Most are explained by option_fields.
+struct FrontTrainingOptions : DrawnTrainingOptions {
+    FrontTrainingOptions() { report_every = 1000; }
     FrontLossOptions loss;
     /// Weights with which the training begins, instead of random ones, and their name in the record.
     std::optional<FrontWeights> initial;
     std::string initial_name;
-    /// Only FrontWeights::colored is learned. It begins with that of `initial`, or with its first set if it
-    /// has none. Answers to scenes without colors do not change. Needs `initial`.
+    /// FrontWeights::colored begins with that of `initial`, or with its first set if it has none.
     bool only_colors = false;
-    /// Inputs of the cost that get no weight, by their names in the feature tables. For ablations.
     std::vector<std::string> without;
-    std::size_t draws_per_step = 8;     ///< changed courses in each step of Adam
     std::size_t imitation_steps = 800;  ///< of teacher forcing
     std::size_t search_steps = 7000;    ///< through the search, after these
     std::size_t judge_steps = 4000;     ///< of FrontJudge, after these
-    /// Networks of the judge that are learned in these steps; the others stay as they are. `usable` is
-    /// no input of the others, so without `rank` and `right` the order of the lanes does not change.
+    /// `usable` is no input of the other networks of the judge, so without `rank` and `right` the order of
+    /// the lanes does not change.
     std::vector<std::string> judge_parts{"rank", "usable", "right"};
     double imitation_rate = 3e-3;  ///< learning rates of Adam, which fall to 0 along a cosine
     double search_rate = 1e-3;
     double judge_rate = 2e-3;
-    /// Target share of lanes that are right up to their trusted length.
     double trusted = 0.995;
-    std::size_t trust_draws = 1000;  ///< changed courses on which least_trust is chosen
+    std::size_t trust_draws = 1000;
     /// These are drawn from the following courses, or from those that are learned from.
     std::vector<Track> trust_courses;
-    std::size_t figures_every = 1000;  ///< steps between two measurements on the scenes held out
-    std::uint64_t seed = 0;
-    unsigned threads = 1;                ///< the weights are the same with any number
-    std::string checkpoint;              ///< file to resume from, written regularly; none if empty
-    std::size_t checkpoint_every = 200;  ///< steps
 };
+/// Those of the record, which determine the weights together with the courses, and how it is run.
+[[nodiscard]] OptionFields option_fields(FrontTrainingOptions& options);
 
 /// Throws InvalidInput naming the option that is out of its range.
 void validate(const FrontTrainingOptions& options);
+
+/// Everything that determines the weights, as one line of JSON.
+[[nodiscard]] std::string describe_training(const std::vector<Track>& courses,
+                                            const FrontTrainingOptions& options);
 
 /// Quality of the lanes of a detector with these weights.
 struct FrontFigures {
@@ -63,25 +59,36 @@ struct FrontFigures {
 [[nodiscard]] FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights,
                                          const FrontSearchOptions& search, unsigned threads);
 
-struct FrontProgress {
-    std::size_t step = 0;
-    std::size_t steps = 0;
-    enum class Stage { move_by_move, through_search, judging } stage = Stage::move_by_move;
-    double loss = 0.0;                   ///< mean of a decision, since the last report
-    double reached = 0.0;                ///< share of the scenes whose true lane the rules allow
-    double kept = 0.0;                   ///< share of the scenes whose true lane the beam kept
-    double found = 0.0;                  ///< share of the scenes whose answer is the true lane
-    double risk = 0.0;                   ///< mean of the answers
-    std::vector<FrontFigures> held_out;  ///< of each set held out
-};
+/// What a training says of its steps since it last said something, and its figures then of each set held out.
+using FrontReport = std::function<void(const std::string& line, const std::vector<FrontFigures>& held_out)>;
 
 /// Learns the weights of `front` from courses: first each move of the true lane, then through the search,
-/// then FrontJudge on the results of the search. The same courses, options (except `threads` and files) and
-/// build give the same weights to the last bit, also if a run was stopped and resumed from its checkpoint.
-/// Throws InvalidInput if an option is out of range, InputError if the checkpoint is of another training.
+/// then FrontJudge on the results of the search. The same courses, options (except run_fields) and build give
+/// the same weights to the last bit, also if a run was stopped and resumed from its checkpoint. Throws
+/// InvalidInput if an option is out of range, InputError if the checkpoint is of another training.
 [[nodiscard]] FrontWeights train_front(const std::vector<Track>& courses,
                                        const std::vector<SceneSet>& held_out,
-                                       const FrontTrainingOptions& options,
-                                       const std::function<void(const FrontProgress&)>& report);
+                                       const FrontTrainingOptions& options, const FrontReport& report);
+
+struct FrontTrainingRunOptions {
+    std::vector<std::string> tracks;    ///< SPECs of load_tracks
+    std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
+    /// The same; least_trust is chosen on them. Never trained on. Empty: it is chosen on the tracks trained
+    /// on.
+    std::vector<std::string> trust_tracks;
+    double hold_out_every_m = 10.0;
+    std::vector<std::string> conditions{"paper", "car"};  ///< a set of held-out scenes each
+    std::vector<double> rates{0.0, 0.1, 0.3, 0.5};        ///< of these scenes
+    FrontTrainingOptions training;
+};
+struct FrontTrainingRun {
+    FrontWeights weights;
+    std::string record;  ///< JSON object: everything that determines the result, the last figures, the commit
+};
+/// From track names to weights and the record of their training. The record names tracks, not files. Runs
+/// without annotated boundaries are left out. `say` gets lines of text. Throws InputError or InvalidInput;
+/// also if a track is both trained on and held out.
+[[nodiscard]] FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
+                                                  const std::function<void(const std::string&)>& say);
 
 }  // namespace conelane::experiments

@@ -2,7 +2,7 @@
 
 #include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/world/cone_index.hpp"
+#include "evaluation/world/ground_truth.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-#include "evaluation/world/track_boundaries.hpp"
+#include "evaluation/world/track.hpp"
 #include "graph_search/front/front_map.hpp"
 
 #include <array>

@@ -4,7 +4,7 @@
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/progress/progress.hpp"
-#include "experiments/training/adam.hpp"
+#include "experiments/training/training_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +21,6 @@ namespace conelane::experiments {
 namespace {
 
 using Generator = boost::random::mt19937_64;
-
-/// Adam's constants as proposed by its authors.
-constexpr double kMinDeviation = 1e-8;
 
 /// All candidates, one column each, and the beginning of each list.
 struct Candidates {
@@ -132,37 +129,6 @@ double sigmoid(double value) {
     return 1.0 / (1.0 + std::exp(-value));
 }
 
-/// A step of Adam with decoupled weight decay.
-class Optimiser {
-  public:
-    Optimiser(const RankNetParameters& parameters, double weight_decay)
-        : weight_decay_(weight_decay),
-          hidden_(parameters.hidden.size(), kMinDeviation),
-          hidden_bias_(parameters.hidden_bias.size(), kMinDeviation),
-          output_(parameters.output.size(), kMinDeviation) {}
-
-    void step(const RankNetParameters& gradient, double learning_rate, RankNetParameters& parameters) {
-        parameters.hidden *= 1.0 - learning_rate * weight_decay_;
-        parameters.output *= 1.0 - learning_rate * weight_decay_;
-        move(hidden_, gradient.hidden, learning_rate, parameters.hidden);
-        move(hidden_bias_, gradient.hidden_bias, learning_rate, parameters.hidden_bias);
-        move(output_, gradient.output, learning_rate, parameters.output);
-    }
-
-  private:
-    template <typename Values>
-    static void move(Adam& adam, const Values& gradient, double learning_rate, Values& parameters) {
-        adam.add(Eigen::Map<const Eigen::ArrayXd>(gradient.data(), gradient.size()));
-        Eigen::Map<Eigen::ArrayXd>(parameters.data(), parameters.size()) -=
-            learning_rate * adam.mean() / adam.deviation();
-    }
-
-    double weight_decay_;
-    Adam hidden_;
-    Adam hidden_bias_;
-    Adam output_;
-};
-
 using Pair = std::pair<Eigen::Index, Eigen::Index>;
 
 /// The pairs of an epoch, shuffled.
@@ -187,87 +153,122 @@ std::vector<Pair> draw_pairs(const Candidates& all, const RankNetParameters& par
     return pairs;
 }
 
-/// One epoch. `rate`: the learning rate as a function of the completed share of the epoch.
-template <typename Rate>
-void train_on_pairs(const Candidates& all, const RankNetTrainingOptions& options, const Rate& rate,
-                    Generator& random, Optimiser& optimiser, RankNetParameters& parameters) {
-    const std::vector<Pair> pairs = draw_pairs(all, parameters, options, random);
+CandidatePairs batch_of(const Candidates& all, std::span<const Pair> pairs, double iou_factor) {
     CandidatePairs batch;
-    RankNetParameters gradient;
-    for (std::size_t begin = 0; begin < pairs.size(); begin += options.pairs_a_step) {
-        const std::size_t count = std::min(options.pairs_a_step, pairs.size() - begin);
-        const auto columns = static_cast<Eigen::Index>(count);
-        batch.first.resize(all.inputs.rows(), columns);
-        batch.second.resize(all.inputs.rows(), columns);
-        batch.first_is_better.resize(columns);
-        for (Eigen::Index i = 0; i < columns; ++i) {
-            const auto [first, second] = pairs[begin + static_cast<std::size_t>(i)];
-            batch.first.col(i) = all.inputs.col(first);
-            batch.second.col(i) = all.inputs.col(second);
-            batch.first_is_better(i) =
-                sigmoid(options.iou_factor * (all.quality[static_cast<std::size_t>(first)] -
-                                              all.quality[static_cast<std::size_t>(second)]));
-        }
-        (void)pair_loss(parameters, batch, &gradient);
-        optimiser.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(pairs.size())),
-                       parameters);
+    const auto columns = static_cast<Eigen::Index>(pairs.size());
+    batch.first.resize(all.inputs.rows(), columns);
+    batch.second.resize(all.inputs.rows(), columns);
+    batch.first_is_better.resize(columns);
+    for (Eigen::Index i = 0; i < columns; ++i) {
+        const auto [first, second] = pairs[static_cast<std::size_t>(i)];
+        batch.first.col(i) = all.inputs.col(first);
+        batch.second.col(i) = all.inputs.col(second);
+        batch.first_is_better(i) = sigmoid(iou_factor * (all.quality[static_cast<std::size_t>(first)] -
+                                                         all.quality[static_cast<std::size_t>(second)]));
     }
+    return batch;
 }
 
-/// One epoch: every scene once, in random order.
-template <typename Rate>
-void train_on_scenes(const Candidates& all, const RankNetTrainingOptions& options, const Rate& rate,
-                     Generator& random, Optimiser& optimiser, RankNetParameters& parameters) {
-    std::vector<std::size_t> order(all.begins.size() - 1);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    shuffle(order, random);
+CandidateScenes batch_of(const Candidates& all, std::span<const std::size_t> lists) {
     CandidateScenes batch;
-    RankNetParameters gradient;
-    for (std::size_t begin = 0; begin < order.size(); begin += options.scenes_a_step) {
-        const std::span<const std::size_t> drawn =
-            std::span(order).subspan(begin, std::min(options.scenes_a_step, order.size() - begin));
-        batch.begins.assign(1, 0);
-        for (const std::size_t list : drawn) {
-            batch.begins.push_back(batch.begins.back() +
-                                   static_cast<Eigen::Index>(all.begins[list + 1] - all.begins[list]));
-        }
-        batch.inputs.resize(all.inputs.rows(), batch.begins.back());
-        batch.quality.resize(batch.begins.back());
-        for (std::size_t i = 0; i < drawn.size(); ++i) {
-            const auto from = static_cast<Eigen::Index>(all.begins[drawn[i]]);
-            const Eigen::Index size = batch.begins[i + 1] - batch.begins[i];
-            batch.inputs.middleCols(batch.begins[i], size) = all.inputs.middleCols(from, size);
-            batch.quality.segment(batch.begins[i], size) =
-                Eigen::Map<const Eigen::RowVectorXd>(all.quality.data() + from, size);
-        }
-        (void)choice_loss(parameters, batch, &gradient);
-        optimiser.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(order.size())),
-                       parameters);
+    batch.begins.assign(1, 0);
+    for (const std::size_t list : lists) {
+        batch.begins.push_back(batch.begins.back() +
+                               static_cast<Eigen::Index>(all.begins[list + 1] - all.begins[list]));
     }
+    batch.inputs.resize(all.inputs.rows(), batch.begins.back());
+    batch.quality.resize(batch.begins.back());
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        const auto from = static_cast<Eigen::Index>(all.begins[lists[i]]);
+        const Eigen::Index size = batch.begins[i + 1] - batch.begins[i];
+        batch.inputs.middleCols(batch.begins[i], size) = all.inputs.middleCols(from, size);
+        batch.quality.segment(batch.begins[i], size) =
+            Eigen::Map<const Eigen::RowVectorXd>(all.quality.data() + from, size);
+    }
+    return batch;
 }
+
+class RankNetTraining : public GradientLearner {
+  public:
+    RankNetTraining(const Candidates& all, const RankNetTrainingOptions& options)
+        : all_(all),
+          options_(options),
+          random_(options.seed),
+          parameters_(initial(options, random_)),
+          progress_("training", options.show_progress ? options.epochs : 0) {}
+
+    [[nodiscard]] const RankNetParameters& parameters() const { return parameters_; }
+    void set_values(const Eigen::ArrayXd& values) override { set(parameters_, values); }
+    [[nodiscard]] bool is_done(std::size_t /*steps*/) const override { return epoch_ == options_.epochs; }
+
+    /// A batch of pairs, or of scenes. In an epoch, each one comes once, in random order.
+    [[nodiscard]] Step step(std::size_t /*number*/) override {
+        const bool of_pairs = options_.loss == RankLoss::pairs;
+        if (begin_ == 0) begin_epoch(of_pairs);
+        const std::size_t size = of_pairs ? pairs_.size() : order_.size();
+        const std::size_t count =
+            std::min(of_pairs ? options_.pairs_a_step : options_.scenes_a_step, size - begin_);
+        Step result;
+        if (count > 0) {
+            RankNetParameters gradient;
+            if (of_pairs) {
+                (void)pair_loss(parameters_,
+                                batch_of(all_, std::span(pairs_).subspan(begin_, count), options_.iou_factor),
+                                &gradient);
+            } else {
+                (void)choice_loss(parameters_, batch_of(all_, std::span(order_).subspan(begin_, count)),
+                                  &gradient);
+            }
+            const double share_of_epoch = static_cast<double>(begin_) / static_cast<double>(size);
+            const double done =
+                (static_cast<double>(epoch_) + share_of_epoch) / static_cast<double>(options_.epochs);
+            result = {flat(gradient), cosine_rate(options_.learning_rate, done)};
+        }
+        begin_ += count;
+        if (begin_ == size) {
+            begin_ = 0;
+            ++epoch_;
+            progress_.advance();
+        }
+        return result;
+    }
+
+    /// With decoupled weight decay.
+    void move(const Adam& adam, double rate, Eigen::ArrayXd& values) const override {
+        values.head(parameters_.hidden.size()) *= 1.0 - rate * options_.weight_decay;
+        values.tail(parameters_.output.size()) *= 1.0 - rate * options_.weight_decay;
+        GradientLearner::move(adam, rate, values);
+    }
+
+  private:
+    void begin_epoch(bool of_pairs) {
+        if (of_pairs) {
+            pairs_ = draw_pairs(all_, parameters_, options_, random_);
+            return;
+        }
+        order_.resize(all_.begins.size() - 1);
+        std::iota(order_.begin(), order_.end(), std::size_t{0});
+        shuffle(order_, random_);
+    }
+
+    const Candidates& all_;
+    const RankNetTrainingOptions& options_;
+    Generator random_;
+    RankNetParameters parameters_;
+    std::size_t epoch_ = 0;
+    std::size_t begin_ = 0;  ///< of the next batch, in the pairs or the order of the epoch
+    std::vector<Pair> pairs_;
+    std::vector<std::size_t> order_;
+    Progress progress_;
+};
 
 void validate(const RankNetTrainingOptions& options) {
-    const auto require = [](bool valid, const char* key, const char* reason) {
-        if (!valid) throw InvalidInput(key, reason);
-    };
-    require(options.inputs == kPaperFeatureCount || options.inputs == kLaneFeatureCount, "inputs",
-            "must be the paper's features or all");
-    require(options.units > 0, "units", "must be positive");
-    require(options.epochs > 0, "epochs", "must be positive");
-    require(options.pairs_a_step > 0, "pairs_a_step", "must be positive");
-    require(options.scenes_a_step > 0, "scenes_a_step", "must be positive");
-    require(std::isfinite(options.learning_rate) && options.learning_rate > 0.0, "learning_rate",
-            "must be positive");
-    require(options.weight_decay >= 0.0 && options.weight_decay * options.learning_rate < 1.0, "weight_decay",
-            "must not be negative, and its product with the learning rate below 1");
-    require(std::isfinite(options.iou_factor) && options.iou_factor > 0.0, "iou_factor", "must be positive");
-    require(options.divergence_penalty >= 0.0 && std::isfinite(options.divergence_penalty),
-            "divergence_penalty", "must not be negative");
-    require(options.late_divergence_penalty >= 0.0 && std::isfinite(options.late_divergence_penalty),
-            "late_divergence_penalty", "must not be negative");
-    require(options.unusable_penalty >= 0.0 && std::isfinite(options.unusable_penalty), "unusable_penalty",
-            "must not be negative");
-    require(options.leader_share >= 0.0 && options.leader_share <= 1.0, "leader_share", "must be in [0, 1]");
+    if (options.inputs != kPaperFeatureCount && options.inputs != kLaneFeatureCount)
+        throw InvalidInput("inputs", "must be the paper's features or all");
+    RankNetTrainingOptions copy = options;
+    require_in_range(option_fields(copy));
+    if (options.weight_decay * options.learning_rate >= 1.0)
+        throw InvalidInput("--decay", "times --rate must be below 1");
 }
 
 }  // namespace
@@ -318,28 +319,35 @@ double choice_loss(const RankNetParameters& parameters, const CandidateScenes& s
     return loss / scene_count;
 }
 
+OptionFields option_fields(RankNetTrainingOptions& options) {
+    return {{"--units", "units", &options.units, kCount, "number of units of the hidden layer"},
+            {"", "loss", options.loss == RankLoss::pairs ? "pairs" : "choice"},
+            {"--epochs", "epochs", &options.epochs, kCount, "rounds over the candidates"},
+            {"", "pairs_a_step", &options.pairs_a_step, kCount},
+            {"--scenes-a-step", "scenes_a_step", &options.scenes_a_step, kCount,
+             "scenes to a step of Adam, with --extended"},
+            {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate of Adam"},
+            {"--decay", "weight_decay", &options.weight_decay, kNotNegative,
+             "decay of the network's weights by each step, times the rate"},
+            {"--iou-factor", "iou_factor", &options.iou_factor, kPositive, "lambda_iou of equation (14)"},
+            {"--divergence-penalty", "divergence_penalty", &options.divergence_penalty, kNotNegative,
+             "subtracted from the IoU of a lane that leaves the true one within 20 m; 0 in the paper"},
+            {"--late-divergence-penalty", "late_divergence_penalty", &options.late_divergence_penalty,
+             kNotNegative, "subtracted for a lane that leaves it later"},
+            {"--unusable-penalty", "unusable_penalty", &options.unusable_penalty, kNotNegative,
+             "also subtracted if a lane is not usable: wrong or too short"},
+            {"--leader-share", "leader_share", &options.leader_share, kShare,
+             "share of the pairs that hold the candidate ranked first so far"},
+            {"", "seed", &options.seed}};
+}
+
 RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
     validate(options);
     Candidates all = gather(lists, options);
     const auto [mean, deviation] = standardise(all.inputs);
-    Generator random(options.seed);
-    RankNetParameters parameters = initial(options, random);
-    Optimiser optimiser(parameters, options.weight_decay);
-    Progress progress("training", options.show_progress ? options.epochs : 0);
-    for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
-        // The rate falls along a cosine from the first step to the last.
-        const auto rate = [&](double share_of_epoch) {
-            const double done =
-                (static_cast<double>(epoch) + share_of_epoch) / static_cast<double>(options.epochs);
-            return cosine_rate(options.learning_rate, done);
-        };
-        if (options.loss == RankLoss::pairs) {
-            train_on_pairs(all, options, rate, random, optimiser, parameters);
-        } else {
-            train_on_scenes(all, options, rate, random, optimiser, parameters);
-        }
-        progress.advance();
-    }
+    RankNetTraining training(all, options);
+    learn(training, flat(training.parameters()), {});
+    const RankNetParameters& parameters = training.parameters();
     return {mean,
             deviation,
             parameters.hidden.cast<float>(),
@@ -369,15 +377,7 @@ RankingFigures ranking_figures(std::span<const CandidateList> lists, const LaneR
         if (list.best_iou() >= kNearGroundTruthIou) figures.near_best_share += 1.0;
     }
     figures.scenes = lists.size();
-    if (lists.empty()) return figures;
-    const auto count = static_cast<double>(lists.size());
-    figures.mean_iou /= count;
-    figures.mean_best_iou /= count;
-    figures.near_best_share /= count;
-    figures.usable_share /= count;
-    figures.most_usable_share /= count;
-    figures.critical_share /= count;
-    figures.least_critical_share /= count;
+    divide_by_scenes(figures);
     return figures;
 }
 

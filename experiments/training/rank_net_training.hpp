@@ -1,11 +1,16 @@
 #pragma once
 
 #include "experiments/training/candidate_lists.hpp"
+#include "experiments/training/option_field.hpp"
 #include "graph_search/clc/ranking.hpp"
 
+#include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,6 +23,17 @@ struct RankNetParameters {
     Eigen::VectorXd hidden_bias;
     Eigen::VectorXd output;
 };
+/// Calls `use` with all numbers, block by block. `parameters`: RankNetParameters.
+template <typename Parameters, typename Use>
+requires std::same_as<std::remove_const_t<Parameters>, RankNetParameters>
+void for_each_block(Parameters& parameters, const Use& use) {
+    const auto block = [&](auto& numbers) {
+        use(std::span(numbers.data(), static_cast<std::size_t>(numbers.size())));
+    };
+    block(parameters.hidden);
+    block(parameters.hidden_bias);
+    block(parameters.output);
+}
 
 /// Pairs of candidates of the same scene, a column each, standardised.
 struct CandidatePairs {
@@ -50,6 +66,7 @@ enum class RankLoss {
     choice  ///< choice_loss
 };
 
+/// Most are explained by option_fields.
 struct RankNetTrainingOptions {
     std::size_t inputs = kPaperFeatureCount;  ///< the paper's features, or kLaneFeatureCount for all
     std::size_t units = 100;
@@ -59,16 +76,13 @@ struct RankNetTrainingOptions {
     std::size_t pairs_a_step = 4096;  ///< a batch of 8192 candidates, as in VIII-B
     std::size_t scenes_a_step = 64;   ///< for choice_loss
     double learning_rate = 0.008;     ///< of Adam; falls to 0 along a cosine
-    /// Each step takes this share of the learning rate off every weight but the units' biases (decoupled
-    /// weight decay).
-    double weight_decay = 0.0;
-    double iou_factor = 50.0;  ///< lambda_iou of equation (14); pairs only
+    double weight_decay = 0.0;        ///< of every weight but the units' biases (decoupled weight decay)
+    double iou_factor = 50.0;         ///< lambda_iou of equation (14); pairs only
     /// Subtracted from the IoU, the quality of a candidate, if it diverges below kCriticalDivergence_m, ...
     double divergence_penalty = 0.0;
     /// ... and if it diverges later. 0 in the paper. A short way off the lane costs little area.
     double late_divergence_penalty = 0.0;
-    /// Also subtracted if the lane is not usable, for any reason: a stub that ends before it can go wrong is
-    /// not an answer. 0 in the paper.
+    /// A stub that ends before it can go wrong is not an answer. 0 in the paper.
     double unusable_penalty = 0.0;
     /// Share of the pairs whose second candidate is the one that the network ranked first at the beginning of
     /// the epoch; the others use any candidate of the scene. In the end only the first rank counts. Pairs
@@ -77,6 +91,7 @@ struct RankNetTrainingOptions {
     std::uint64_t seed = 0;
     bool show_progress = true;
 };
+[[nodiscard]] OptionFields option_fields(RankNetTrainingOptions& options);
 
 /// Trains a network from random weights. The same lists, options and build give the same weights to the last
 /// bit; runs on one thread. Throws InvalidInput if no list has two candidates or an option is out of range.
@@ -93,6 +108,17 @@ struct RankingFigures {
     double most_usable_share = 0.0;     ///< scenes with a candidate that can
     double critical_share = 0.0;        ///< scenes without candidate or whose chosen one diverges below 20 m
     double least_critical_share = 0.0;  ///< scenes in which every candidate does
+
+    static constexpr auto fields() {
+        using Figures = RankingFigures;
+        return std::array{std::pair{"mean_iou", &Figures::mean_iou},
+                          std::pair{"mean_best_iou", &Figures::mean_best_iou},
+                          std::pair{"near_best_share", &Figures::near_best_share},
+                          std::pair{"usable_share", &Figures::usable_share},
+                          std::pair{"most_usable_share", &Figures::most_usable_share},
+                          std::pair{"critical_share", &Figures::critical_share},
+                          std::pair{"least_critical_share", &Figures::least_critical_share}};
+    }
 };
 /// All zero without lists.
 [[nodiscard]] RankingFigures ranking_figures(std::span<const CandidateList> lists,

@@ -1,6 +1,6 @@
 #include "experiments/training/rld_learner.hpp"
 
-#include "evaluation/world/cone_index.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
@@ -10,15 +10,6 @@
 
 namespace conelane::experiments {
 namespace {
-
-template <typename Costs, typename Use>
-void for_each_list(Costs& costs, const Use& use) {
-    for (auto& network : costs.networks) {
-        use(network.linear);
-        use(network.hidden);
-        use(network.output);
-    }
-}
 
 /// Adds the derivatives of the network's value at these features, times `factor`.
 void add_gradient(const LearnedNetwork& network, std::span<const double> features, double factor,
@@ -36,20 +27,6 @@ void add_gradient(const LearnedNetwork& network, std::span<const double> feature
 }
 
 }  // namespace
-
-Eigen::ArrayXd flat(const LearnedCosts& costs) {
-    std::vector<double> all;
-    for_each_list(costs,
-                  [&](const std::vector<double>& list) { all.insert(all.end(), list.begin(), list.end()); });
-    return Eigen::Map<const Eigen::ArrayXd>(all.data(), static_cast<Eigen::Index>(all.size()));
-}
-
-void set(LearnedCosts& costs, const Eigen::ArrayXd& values) {
-    Eigen::Index at = 0;
-    for_each_list(costs, [&](std::vector<double>& list) {
-        for (double& number : list) number = values[at++];
-    });
-}
 
 LaneGraph true_lane_graph(const AnnotatedScene& scene) {
     const auto index_of = index_by_id(scene.scene);

@@ -4,23 +4,25 @@
 #include "conelane/learned_costs.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/rld_solver.hpp"
+#include "detectors/parameters/learned_costs_reader.hpp"
 #include "evaluation/world/annotated_scene.hpp"
 #include "model/learned_features.hpp"
 
+#include <concepts>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
-
-#include <Eigen/Core>
+#include <string>
+#include <type_traits>
 
 namespace conelane::experiments {
 
-/// The numbers of all networks, one list after the other.
-[[nodiscard]] Eigen::ArrayXd flat(const LearnedCosts& costs);
-/// Precondition: as many as `flat` gives.
-void set(LearnedCosts& costs, const Eigen::ArrayXd& values);
+/// Calls `use` with the numbers of all networks, list by list. `costs`: LearnedCosts.
+template <typename Costs, typename Use>
+requires std::same_as<std::remove_const_t<Costs>, LearnedCosts>
+void for_each_block(Costs& costs, const Use& use) {
+    for_each_costs_list(costs, [&](const std::string& /*key*/, auto& numbers) { use(std::span(numbers)); });
+}
 
 /// The truth of a scene as a lane graph of its cones. Precondition: it has a ground truth with open
 /// boundaries.

@@ -3,9 +3,8 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "evaluation/formats/parameter_tag.hpp"
+#include "evaluation/formats/provenance.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "experiments/training/adam.hpp"
-#include "experiments/training/training_checkpoint.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +12,9 @@
 #include <string_view>
 
 #include <boost/random/normal_distribution.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace conelane::experiments {
 namespace {
@@ -52,14 +50,14 @@ LearnedCosts initial_costs(const RldTrainingOptions& options) {
     return is_linear ? with_hidden_units(start, options.units, options.seed) : start;
 }
 
-class Training {
+class RldTraining : public GradientLearner {
   public:
-    Training(const std::vector<Track>& courses, const RldTrainingOptions& options)
+    RldTraining(const std::vector<Track>& courses, const RldTrainingOptions& options,
+                const std::function<void(const std::string&)>& say)
         : options_(options),
+          say_(say),
           scenes_(courses, options.scenes, options.seed),
           costs_(initial_costs(options)),
-          values_(flat(costs_)),
-          adam_(values_.size(), kMinDeviation),
           slots_(options.draws_per_step) {
         for (Slot& slot : slots_) {
             slot.learner = std::make_unique<RldLearner>(options.margin, options.max_work);
@@ -68,51 +66,48 @@ class Training {
     }
 
     [[nodiscard]] const LearnedCosts& costs() const { return costs_; }
-    [[nodiscard]] Eigen::Index size() const { return values_.size(); }
+    [[nodiscard]] bool is_done(std::size_t steps) const override { return steps >= options_.steps; }
+    void set_values(const Eigen::ArrayXd& values) override { set(costs_, values); }
 
-    /// Adds the result of a draw to the sums of `progress`.
-    void step(std::size_t number, RldProgress& progress) {
+    [[nodiscard]] Step step(std::size_t number) override {
         RldParameters parameters = options_.parameters;
         parameters.learned_costs = std::make_shared<const LearnedCosts>(costs_);
         oneapi::tbb::parallel_for(std::size_t{0}, slots_.size(), [&](std::size_t i) {
             fill(slots_[i], static_cast<std::uint64_t>(number) * slots_.size() + i, parameters);
         });
-        Eigen::ArrayXd gradient = Eigen::ArrayXd::Zero(values_.size());
+        Eigen::ArrayXd gradient = flat(LearnedCosts::zero(options_.units));
         double allowed = 0.0;
         for (const Slot& slot : slots_) {
             gradient += flat(slot.gradient);
             for (const RldLearner::Loss& loss : slot.losses) {
-                ++progress.scenes;
+                ++sums_.scenes;
                 if (!loss.allowed) continue;
                 allowed += 1.0;
-                progress.proven += loss.proven ? 1.0 : 0.0;
-                progress.found += loss.found ? 1.0 : 0.0;
-                progress.hinge += loss.hinge;
+                sums_.proven += loss.proven ? 1.0 : 0.0;
+                sums_.found += loss.found ? 1.0 : 0.0;
+                sums_.hinge += loss.hinge;
             }
         }
-        progress.allowed += allowed;
-        if (allowed == 0.0) return;
-        gradient /= allowed;
-        const double length = std::sqrt(gradient.square().sum());
-        if (length > kMaxGradient) gradient *= kMaxGradient / length;
-        adam_.add(gradient);
+        sums_.allowed += allowed;
+        if (allowed == 0.0) return {};
         const double done = static_cast<double>(number) / static_cast<double>(options_.steps);
-        values_ -= cosine_rate(options_.learning_rate, done) * adam_.mean() / adam_.deviation();
-        set(costs_, values_);
+        return {limited_mean(gradient, allowed, kMaxGradient), cosine_rate(options_.learning_rate, done)};
     }
 
-    [[nodiscard]] TrainingCheckpoint checkpoint(std::size_t step) const {
-        return {step, values_, adam_.state()};
-    }
-    void restore(const TrainingCheckpoint& checkpoint) {
-        values_ = checkpoint.values;
-        adam_.restore(checkpoint.adam);
-        set(costs_, values_);
+    void report(std::size_t steps) override {
+        const double allowed = std::max(sums_.allowed, 1.0);
+        say_(fmt::format(
+            "step {} of {}: loss {:.4f}; of {} scenes the true lane is allowed in {:.1f} %; of these "
+            "{:.1f} % have no cheaper rival, {:.1f} % searched to the end",
+            steps, options_.steps, sums_.hinge / allowed, sums_.scenes,
+            100.0 * (sums_.allowed / static_cast<double>(std::max<std::size_t>(sums_.scenes, 1))),
+            100.0 * (sums_.found / allowed), 100.0 * (sums_.proven / allowed)));
+        sums_ = {};
     }
 
   private:
     void fill(Slot& slot, std::uint64_t number, const RldParameters& parameters) const {
-        set(slot.gradient, Eigen::ArrayXd::Zero(values_.size()));
+        slot.gradient = LearnedCosts::zero(options_.units);
         slot.losses.clear();
         for (const AnnotatedScene& scene : scenes_.draw(number).scenes) {
             if (scene.ground_truth && !scene.ground_truth->closed)
@@ -120,13 +115,38 @@ class Training {
         }
     }
 
-    RldTrainingOptions options_;
+    const RldTrainingOptions& options_;
+    const std::function<void(const std::string&)>& say_;
     FrontScenes scenes_;
     LearnedCosts costs_;
-    Eigen::ArrayXd values_;
-    Adam adam_;
     std::vector<Slot> slots_;
+    struct Sums {  ///< since the last report
+        std::size_t scenes = 0;
+        double allowed = 0.0;  ///< scenes whose truth is a lane graph of the problem; of these:
+        double proven = 0.0;   ///< searches for a rival that ended with a proof
+        double found = 0.0;    ///< scenes without a cheaper rival
+        double hinge = 0.0;
+    } sums_;
 };
+
+std::string describe_training(const std::vector<Track>& courses, const RldTrainingOptions& options) {
+    nlohmann::ordered_json record{{"tracks", nlohmann::ordered_json::array()}};
+    for (const Track& track : courses) record["tracks"].push_back(track.name);
+    RldTrainingOptions copy = options;
+    record.update(record_of(option_fields(copy)));
+    return record.dump();
+}
+
+void validate(const RldTrainingOptions& options) {
+    RldTrainingOptions copy = options;
+    require_in_range(option_fields(copy));
+    validate(options.parameters);
+    if (!options.parameters.learned_costs) return;
+    for (const LearnedNetwork& network : options.parameters.learned_costs->networks) {
+        if (network.units() != 0 && network.units() != options.units)
+            throw InvalidInput("--units", "must be those of the costs that the training begins with");
+    }
+}
 
 }  // namespace
 
@@ -134,7 +154,8 @@ RldParameters rld_learning_parameters() {
     RldParameters parameters = rld_parameter_set("shape").value();
     for (double RldParameters::*const weight :
          {&RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p, &RldParameters::w_b,
-          &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n}) {
+          &RldParameters::unevenness_weight, &RldParameters::facing_weight,
+          &RldParameters::near_end_weight}) {
         parameters.*weight = 0.0;
     }
     parameters.t_crit = 12.0;
@@ -147,8 +168,8 @@ RldParameters rld_learning_parameters() {
     parameters.d_gap = 12.5;
     parameters.theta_gap = 1.3;
     parameters.d_clear = 0.2;
-    parameters.k_edge = 8.0;
-    parameters.k_gap = 16.0;
+    parameters.nearest_of_edge = 8.0;
+    parameters.nearest_of_gap = 16.0;
     return parameters;
 }
 
@@ -161,12 +182,12 @@ LearnedCosts shape_as_learned_costs() {
     weight(costs, LearnedPart::edge, "one") = -shape.w_b - kMoved;
     weight(costs, LearnedPart::edge, "spacing") = shape.w_s;
     weight(costs, LearnedPart::edge, "heading") = shape.w_p;
-    weight(costs, LearnedPart::edge, "facing") = shape.w_v;
+    weight(costs, LearnedPart::edge, "facing") = shape.facing_weight;
     weight(costs, LearnedPart::turn, "one") = kMoved;
     weight(costs, LearnedPart::turn, "angle_cost") = shape.w_t;
-    weight(costs, LearnedPart::turn, "unevenness") = shape.w_u;
+    weight(costs, LearnedPart::turn, "unevenness") = shape.unevenness_weight;
     weight(costs, LearnedPart::near_end, "one") = kEnd;
-    weight(costs, LearnedPart::near_end, "fit") = -shape.w_n;
+    weight(costs, LearnedPart::near_end, "fit") = -shape.near_end_weight;
     weight(costs, LearnedPart::far_end, "one") = kEnd;
     return costs;
 }
@@ -194,87 +215,52 @@ LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, st
     return costs;
 }
 
-void validate(const RldTrainingOptions& options) {
-    const auto require = [](bool valid, const char* key, const char* reason) {
-        if (!valid) throw InvalidInput(key, reason);
-    };
-    validate(options.parameters);
-    require(options.units <= 256, "units", "must be at most 256");
-    if (options.parameters.learned_costs) {
-        for (const LearnedNetwork& network : options.parameters.learned_costs->networks)
-            require(network.units() == 0 || network.units() == options.units, "units",
-                    "must be those of the costs that the training begins with");
-    }
-    require(options.max_work > 0, "max_work", "must be positive");
-    require(options.draws_per_step > 0, "draws_per_step", "must be positive");
-    require(options.scenes.scenes_per_draw > 0, "scenes_per_draw", "must be positive");
-    require(options.learning_rate > 0.0 && std::isfinite(options.learning_rate), "learning_rate",
-            "must be positive");
-    for (const double margin : {options.margin.near, options.margin.far})
-        require(margin >= 0.0 && std::isfinite(margin), "margin", "must be 0 or positive");
-    require(options.report_every > 0, "report_every", "must be positive");
-    require(options.checkpoint_every > 0, "checkpoint_every", "must be positive");
-    require(options.threads > 0, "threads", "must be positive");
-}
-
-std::string describe_training(const std::vector<Track>& courses, const RldTrainingOptions& options) {
-    using Json = nlohmann::ordered_json;
-    Json names = Json::array();
-    for (const Track& track : courses) names.push_back(track.name);
-    return Json{
-        {"tracks", names},
-        {"seed", options.seed},
-        {"draws_per_step", options.draws_per_step},
-        {"scenes",
-         {{"per_draw", options.scenes.scenes_per_draw},
-          {"warp", options.scenes.warp},
-          {"respace", options.scenes.respace},
-          {"disturb", options.scenes.disturb},
-          {"short_sight", options.scenes.short_sight},
-          {"other_course", options.scenes.other_course},
-          {"colored_share", options.scenes.colored_share},
-          {"highest_rate", options.scenes.highest_rate}}},
-        {"parameters_hash", tag_of("", options.parameters).hash.value()},
-        {"units", options.units},
-        {"steps", options.steps},
-        {"learning_rate", options.learning_rate},
-        {"margin",
-         {{"near", options.margin.near}, {"far", options.margin.far}, {"near_m", options.margin.near_m}}},
-        {"max_work", options.max_work}}
-        .dump();
+OptionFields option_fields(RldTrainingOptions& options) {
+    options.parameters_hash = tag_of("", options.parameters).hash.value();
+    OptionFields fields = draw_fields(options, false);
+    const OptionFields own{
+        {"", "parameters_hash", &options.parameters_hash},
+        {"--units",
+         "units",
+         &options.units,
+         {0.0, 256.0},
+         "hidden units of each network; 0 for linear costs, a readable weight a feature"},
+        {"--steps", "steps", &options.steps, kCountOrNone, "steps of Adam"},
+        {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate, which falls to 0"},
+        {"--margin", "margin.near", &options.margin.near, kNotNegative,
+         "cost by which the true lane has to beat another one, for each edge within 20 m that differs"},
+        {"--far-margin", "margin.far", &options.margin.far, kNotNegative, "the same beyond 20 m"},
+        {"", "margin.near_m", &options.margin.near_m},
+        {"--max-work",
+         "max_work",
+         &options.max_work,
+         {.least = 1.0},
+         "limit of each exact search, in steps of about a nanosecond; then its best lane counts"}};
+    fields.insert(fields.end(), own.begin(), own.end());
+    const OptionFields run = run_fields(options, "--report-every");
+    fields.insert(fields.end(), run.begin(), run.end());
+    return fields;
 }
 
 LearnedCosts train_rld(const std::vector<Track>& courses, const RldTrainingOptions& options,
-                       const std::function<void(const RldProgress&)>& report) {
+                       const std::function<void(const std::string&)>& say) {
     validate(options);
-    oneapi::tbb::task_arena arena(
-        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
-    Training training(courses, options);
-    std::size_t step = 0;
-    const std::string identity = describe_training(courses, options);
-    if (!options.checkpoint.empty()) {
-        if (const auto checkpoint = read_training_checkpoint(options.checkpoint, identity, training.size())) {
-            training.restore(*checkpoint);
-            step = checkpoint->step;
-        }
-    }
-    RldProgress progress;
-    while (step < options.steps) {
-        arena.execute([&] { training.step(step, progress); });
-        ++step;
-        const bool is_last = step == options.steps;
-        if (!options.checkpoint.empty() && (is_last || step % options.checkpoint_every == 0))
-            write_training_checkpoint(options.checkpoint, identity, training.checkpoint(step));
-        if (!report || (!is_last && step % options.report_every != 0)) continue;
-        progress.step = step;
-        progress.steps = options.steps;
-        const double allowed = std::max(progress.allowed, 1.0);
-        for (double* sum : {&progress.proven, &progress.found, &progress.hinge}) *sum /= allowed;
-        progress.allowed /= static_cast<double>(std::max<std::size_t>(progress.scenes, 1));
-        report(progress);
-        progress = {};
-    }
+    RldTraining training(courses, options, say);
+    learn(training, flat(training.costs()),
+          loop_of(options, kMinDeviation, describe_training(courses, options), say != nullptr));
     return training.costs();
+}
+
+RldTrainingRun run_rld_training(const std::vector<std::string>& tracks, const RldTrainingOptions& options,
+                                const std::function<void(const std::string&)>& say) {
+    const std::vector<Track> courses = annotated_tracks(tracks);
+    RldTrainingRun run;
+    run.parameters = options.parameters;
+    run.parameters.learned_costs = std::make_shared<const LearnedCosts>(train_rld(courses, options, say));
+    auto record = nlohmann::ordered_json::parse(describe_training(courses, options));
+    record["commit"] = provenance().commit;
+    run.record = record.dump();
+    return run;
 }
 
 }  // namespace conelane::experiments

@@ -4,7 +4,7 @@
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/progress/progress.hpp"
-#include "experiments/training/adam.hpp"
+#include "experiments/training/training_loop.hpp"
 #include "graph_search/clc/lane_features.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 
@@ -111,19 +111,14 @@ class RightLane {
     void add_loss(std::size_t right, Course& course, std::vector<double>& derivatives) {
         competitors_.assign(beam_.level().begin(), beam_.level().end());
         if (std::ranges::find(competitors_, right) == competitors_.end()) competitors_.push_back(right);
-        double highest = beam_.state(right).score;
-        for (const std::size_t number : competitors_) {
-            highest = std::max(highest, beam_.state(number).score);
-        }
-        double sum = 0.0;
-        for (const std::size_t number : competitors_) sum += std::exp(beam_.state(number).score - highest);
-        for (const std::size_t number : competitors_) {
-            const double probability = std::exp(beam_.state(number).score - highest) / sum;
-            const double factor = number == right ? probability - 1.0 : probability;
+        probabilities_.clear();
+        for (const std::size_t number : competitors_) probabilities_.push_back(beam_.state(number).score);
+        to_probabilities(probabilities_);
+        for (std::size_t i = 0; i < competitors_.size(); ++i) {
+            const double factor = probabilities_[i] - (competitors_[i] == right ? 1.0 : 0.0);
             if (std::abs(factor) < kMinProbability) continue;
-            for (std::size_t at = number; at != LaneBeam::kNone; at = beam_.state(at).parent) {
+            for (std::size_t at = competitors_[i]; at != LaneBeam::kNone; at = beam_.state(at).parent)
                 add_score_derivatives(beam_.state(at).step, factor, derivatives);
-            }
         }
         ++course.levels;
     }
@@ -135,57 +130,82 @@ class RightLane {
     PathPairVertices truth_;
     std::array<std::size_t, 2> near_vertices_{0, 0};
     std::vector<std::size_t> competitors_;
+    std::vector<double> probabilities_;  ///< of the competitors
 };
 
-void validate(const StepScoreTrainingOptions& options) {
-    const auto require = [](bool valid, const char* key, const char* reason) {
-        if (!valid) throw InvalidInput(key, reason);
-    };
-    conelane::validate(options.search);
-    require(options.epochs > 0, "epochs", "must be positive");
-    require(std::isfinite(options.learning_rate) && options.learning_rate > 0.0, "learning_rate",
-            "must be positive");
-    require(std::isfinite(options.weight_decay) && options.weight_decay >= 0.0, "weight_decay",
-            "must not be negative");
-}
+class StepScoreTraining : public GradientLearner {
+  public:
+    StepScoreTraining(const SceneSet& set, const StepScoreTrainingOptions& options)
+        : options_(options),
+          random_(options.seed),
+          lane_(options.search),
+          derivatives_(step_score_count()),
+          progress_("training", options.show_progress ? options.epochs : 0) {
+        scores.values.assign(step_score_count(), 0.0);
+        for (const AnnotatedScene& scene : set.scenes) {
+            if (counts(scene)) scenes_.push_back(&scene);
+        }
+    }
+
+    StepScores scores;
+    bool has_learned = false;
+
+    void set_values(const Eigen::ArrayXd& values) override {
+        scores.values.assign(values.begin(), values.end());
+    }
+    [[nodiscard]] bool is_done(std::size_t steps) const override { return steps == all_steps(); }
+    /// One scene. In an epoch each one comes once, in random order.
+    [[nodiscard]] Step step(std::size_t number) override {
+        const std::size_t place = number % scenes_.size();
+        if (place == 0) shuffle(scenes_, random_);
+        std::ranges::fill(derivatives_, 0.0);
+        const RightLane::Course course = lane_.follow(*scenes_[place], scores, &derivatives_);
+        if (place + 1 == scenes_.size()) progress_.advance();
+        if (course.levels == 0) return {};
+        has_learned = true;
+        const double done = static_cast<double>(number) / static_cast<double>(all_steps());
+        return {Eigen::Map<const Eigen::ArrayXd>(derivatives_.data(),
+                                                 static_cast<Eigen::Index>(derivatives_.size())) /
+                    static_cast<double>(course.levels),
+                cosine_rate(options_.learning_rate, done)};
+    }
+    /// With weight decay.
+    void move(const Adam& adam, double rate, Eigen::ArrayXd& values) const override {
+        values -= rate * (adam.mean() / adam.deviation() + options_.weight_decay * values);
+    }
+
+  private:
+    [[nodiscard]] std::size_t all_steps() const { return options_.epochs * scenes_.size(); }
+
+    const StepScoreTrainingOptions& options_;
+    std::vector<const AnnotatedScene*> scenes_;
+    boost::random::mt19937_64 random_;
+    RightLane lane_;
+    std::vector<double> derivatives_;
+    Progress progress_;
+};
 
 }  // namespace
 
+OptionFields option_fields(StepScoreTrainingOptions& options) {
+    return {{"", "width", &options.search.beam_width},
+            {"--step-epochs", "epochs", &options.epochs, kCount, "rounds over the scenes, with --steps"},
+            {"--step-rate", "learning_rate", &options.learning_rate, kPositive,
+             "learning rate of Adam, with --steps"},
+            {"--step-decay", "weight_decay", &options.weight_decay, kNotNegative,
+             "decay of a score by each step, times the rate, with --steps"},
+            {"", "seed", &options.seed}};
+}
+
 StepScores train_step_scores(const SceneSet& set, const StepScoreTrainingOptions& options) {
-    validate(options);
-    std::vector<const AnnotatedScene*> scenes;
-    for (const AnnotatedScene& scene : set.scenes) {
-        if (counts(scene)) scenes.push_back(&scene);
-    }
-    const std::size_t count = step_score_count();
-    StepScores scores{std::vector<double>(count, 0.0)};
-    std::vector<double> derivatives(count);
-    const auto size = static_cast<Eigen::Index>(count);
-    Adam adam(size, kMinDeviation);
-    boost::random::mt19937_64 random(options.seed);
-    RightLane lane(options.search);
-    Progress progress("training", options.show_progress ? options.epochs : 0);
-    std::size_t met = 0;
-    std::size_t learned_from = 0;
-    for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
-        shuffle(scenes, random);
-        for (const AnnotatedScene* scene : scenes) {
-            const double done =
-                static_cast<double>(met++) / static_cast<double>(options.epochs * scenes.size());
-            const double rate = cosine_rate(options.learning_rate, done);
-            std::ranges::fill(derivatives, 0.0);
-            const RightLane::Course course = lane.follow(*scene, scores, &derivatives);
-            if (course.levels == 0) continue;
-            ++learned_from;
-            adam.add(Eigen::Map<const Eigen::ArrayXd>(derivatives.data(), size) /
-                     static_cast<double>(course.levels));
-            Eigen::Map<Eigen::ArrayXd> values(scores.values.data(), size);
-            values -= rate * (adam.mean() / adam.deviation() + options.weight_decay * values);
-        }
-        progress.advance();
-    }
-    if (learned_from == 0) throw InvalidInput("tracks", "no scene has a right lane to start with");
-    return scores;
+    validate(options.search);
+    StepScoreTrainingOptions copy = options;
+    require_in_range(option_fields(copy));
+    StepScoreTraining training(set, options);
+    learn(training, Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(step_score_count())),
+          {.smallest_deviation = kMinDeviation});
+    if (!training.has_learned) throw InvalidInput("tracks", "no scene has a right lane to start with");
+    return training.scores;
 }
 
 StepScoreFigures step_score_figures(const SceneSet& set, const StepScores& scores,
@@ -200,11 +220,7 @@ StepScoreFigures step_score_figures(const SceneSet& set, const StepScores& score
         figures.near_kept_share += course.near_kept ? 1.0 : 0.0;
         figures.kept_share += course.kept ? 1.0 : 0.0;
     }
-    if (figures.scenes == 0) return figures;
-    const auto count = static_cast<double>(figures.scenes);
-    figures.start_share /= count;
-    figures.near_kept_share /= count;
-    figures.kept_share /= count;
+    divide_by_scenes(figures);
     return figures;
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
 #include "evaluation/formats/scene_set.hpp"
+#include "experiments/training/option_field.hpp"
 #include "graph_search/clc/candidate_search.hpp"
 #include "graph_search/clc/lane_beam.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace conelane::experiments {
 
@@ -18,6 +21,7 @@ struct StepScoreTrainingOptions {
     std::uint64_t seed = 0;
     bool show_progress = true;
 };
+[[nodiscard]] OptionFields option_fields(StepScoreTrainingOptions& options);
 
 /// Learns the scores that keep the right lane in the beam (learning as search optimisation). The ground truth
 /// grows beside the beam. On each level, and once more where it ends and all others go on, the loss is minus
@@ -33,6 +37,13 @@ struct StepScoreFigures {
     double start_share = 0.0;      ///< scenes whose right pair is one to start from
     double near_kept_share = 0.0;  ///< right lane on each level up to kNearPart_m on both sides
     double kept_share = 0.0;       ///< up to its end
+
+    static constexpr auto fields() {
+        using Figures = StepScoreFigures;
+        return std::array{std::pair{"start_share", &Figures::start_share},
+                          std::pair{"near_kept_share", &Figures::near_kept_share},
+                          std::pair{"kept_share", &Figures::kept_share}};
+    }
 };
 /// All zero without scenes.
 [[nodiscard]] StepScoreFigures step_score_figures(const SceneSet& set, const StepScores& scores,

@@ -2,9 +2,10 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/known_keys.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
+#include "experiments/progress/parallel.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +16,6 @@
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <fmt/format.h>
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace conelane::experiments {
 namespace {
@@ -32,23 +29,14 @@ constexpr double kMovedShare = 0.4;
 
 /// Four significant digits: short numbers in files, and the same on every machine, although logarithms differ
 /// in the last bits.
-double rounded(double value) {
+double short_value(double value) {
     return value == 0.0 ? 0.0 : std::stod(fmt::format("{:.4g}", value));
 }
 
 /// The value at a share of the range.
 double at(const TunableParameter& parameter, double share) {
-    const double inside = std::clamp(share, 0.0, 1.0);
-    const double value = parameter.logarithmic
-                             ? parameter.lowest * std::pow(parameter.highest / parameter.lowest, inside)
-                             : parameter.lowest + inside * (parameter.highest - parameter.lowest);
-    return std::clamp(rounded(value), parameter.lowest, parameter.highest);
-}
-
-double share_of(const TunableParameter& parameter, double value) {
-    return parameter.logarithmic
-               ? std::log(value / parameter.lowest) / std::log(parameter.highest / parameter.lowest)
-               : (value - parameter.lowest) / (parameter.highest - parameter.lowest);
+    return std::clamp(short_value(value_at(parameter, std::clamp(share, 0.0, 1.0))), parameter.lowest,
+                      parameter.highest);
 }
 
 std::vector<double> anywhere(std::span<const TunableParameter> parameters,
@@ -79,21 +67,16 @@ std::vector<double> nearby(std::span<const TunableParameter> parameters, std::ve
 DetectorFigure evaluate(const DetectorRecipe& recipe, std::span<const double> values, const SceneSet& set,
                         unsigned threads) {
     std::vector<SceneScore> scores(set.scenes.size());
-    oneapi::tbb::enumerable_thread_specific<std::unique_ptr<LaneDetector>> detectors(
-        [&] { return recipe.tuned()->make(values); });
-    oneapi::tbb::task_arena arena(
-        std::min(static_cast<int>(threads), oneapi::tbb::info::default_concurrency()));
-    arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, set.scenes.size(), [&](std::size_t i) {
+    in_parallel(
+        set.scenes.size(), threads, [&] { return recipe.tuned()->make(values); },
+        [&](std::unique_ptr<LaneDetector>& made, std::size_t i) {
             const AnnotatedScene& scene = set.scenes[i];
             if (!counts(scene)) return;
-            LaneDetector& made = *detectors.local();
-            made.reset();
+            made->reset();
             const LaneAnswer answer =
-                made.detect(scene.scene, {.time_limit_ms = std::numeric_limits<double>::infinity()});
+                made->detect(scene.scene, {.time_limit_ms = std::numeric_limits<double>::infinity()});
             scores[i] = score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track));
         });
-    });
     DetectorFigure figure;
     for (std::size_t i = 0; i < scores.size(); ++i) {
         if (!counts(set.scenes[i])) continue;

@@ -3,34 +3,19 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/world/ground_truth.hpp"
+#include "experiments/progress/parallel.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 #include <utility>
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 namespace conelane::experiments {
 namespace {
 
-struct SceneValue {
-    double value = 0.0;
-    bool timed_out = false;
-};
-
-SceneValue value_on(RldSolver& solver, const AnnotatedScene& annotated, const TrackBoundaries& boundaries,
-                    const RldParameters& parameters, const EvaluationOptions& options) {
-    const EvaluatedScene evaluated = evaluate(solver, annotated.scene, parameters, options);
-    if (evaluated.report.status == SolveStatus::feasible || evaluated.report.status == SolveStatus::stopped)
-        return {0.0, true};
-    if (evaluated.report.nodes > options.max_nodes) return {};
-    return {value_of(evaluated.answer, annotated, boundaries, options)};
-}
+constexpr std::array<std::string_view, 4> kObjectives{"accuracy", "iou", "success", "usable"};
 
 }  // namespace
 
@@ -69,31 +54,19 @@ double value_of(const LaneAnswer& answer, const AnnotatedScene& scene, const Tra
                 const EvaluationOptions& options) {
     if (answer.status != LaneStatus::found) return 0.0;
     const SceneScore result = score(scene, answer, 0.0, options.nearest, &boundaries);
-    switch (options.objective) {
-        case TuningObjective::accuracy:
-            return result.accurate() ? 1.0 : 0.0;
-        case TuningObjective::iou:
-            return result.iou.value_or(0.0);
-        case TuningObjective::usable:
-            return result.usable().value_or(false) ? 1.0 : 0.0;
-        case TuningObjective::success:
-            break;
-    }
-    return result.success() ? 1.0 : 0.0;
+    if (options.objective == TuningObjective::iou) return result.iou.value_or(0.0);
+    const bool is_good = options.objective == TuningObjective::accuracy ? result.accurate()
+                         : options.objective == TuningObjective::usable ? result.usable().value_or(false)
+                                                                        : result.success();
+    return is_good ? 1.0 : 0.0;
+}
+
+std::span<const std::string_view> objective_names() {
+    return kObjectives;
 }
 
 std::string_view to_string(TuningObjective objective) {
-    switch (objective) {
-        case TuningObjective::accuracy:
-            return "accuracy";
-        case TuningObjective::iou:
-            return "iou";
-        case TuningObjective::usable:
-            return "usable";
-        case TuningObjective::success:
-            break;
-    }
-    return "success";
+    return kObjectives[static_cast<std::size_t>(objective)];
 }
 
 Evaluation::Evaluation(SceneSet set, const EvaluationOptions& options)
@@ -111,19 +84,18 @@ std::vector<LapFigure> Evaluation::operator()(const RldParameters& parameters) c
     std::atomic<std::size_t> timed_out{0};
     const double timed_out_limit = options_.max_timed_out * static_cast<double>(scenes.size());
     const auto abandoned = [&] { return static_cast<double>(timed_out.load()) > timed_out_limit; };
-    oneapi::tbb::enumerable_thread_specific<std::unique_ptr<RldSolver>> solvers(
-        [] { return make_path_pair_solver(); });
-    oneapi::tbb::task_arena arena(
-        std::min(static_cast<int>(options_.threads), oneapi::tbb::info::default_concurrency()));
-    arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
+    in_parallel(
+        scenes.size(), options_.threads, [] { return make_path_pair_solver(); },
+        [&](std::unique_ptr<RldSolver>& solver, std::size_t i) {
             if (abandoned()) return;
-            const SceneValue result =
-                value_on(*solvers.local(), scenes[i], set_.tracks.at(scenes[i].track), parameters, options_);
-            values[i] = result.value;
-            if (result.timed_out) ++timed_out;
+            const EvaluatedScene evaluated = evaluate(*solver, scenes[i].scene, parameters, options_);
+            const SolveStatus status = evaluated.report.status;
+            if (status == SolveStatus::feasible || status == SolveStatus::stopped) {
+                ++timed_out;
+            } else if (evaluated.report.nodes <= options_.max_nodes) {
+                values[i] = value_of(evaluated.answer, scenes[i], boundaries_of(scenes[i]), options_);
+            }
         });
-    });
     std::vector<LapFigure> laps;
     const std::vector<std::size_t> starts = lap_starts(scenes);
     for (std::size_t lap = 0; lap + 1 < starts.size(); ++lap) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ enum class TuningObjective {
     usable,    ///< share usable
 };
 [[nodiscard]] std::string_view to_string(TuningObjective objective);
+/// In the order of the enumeration.
+[[nodiscard]] std::span<const std::string_view> objective_names();
 
 struct EvaluationOptions {
     TuningObjective objective = TuningObjective::accuracy;

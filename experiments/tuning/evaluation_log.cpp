@@ -1,12 +1,11 @@
 #include "experiments/tuning/evaluation_log.hpp"
 
 #include "conelane/rld_parameters.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/input_error.hpp"
 
 #include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -30,11 +29,6 @@ std::vector<double> key_of(const RldParameters& parameters) {
     return key;
 }
 
-LapFigure read_lap(const JsonNode& json) {
-    return {json.member("track").string(), json.member("rate").number(), json.member("range").number(),
-            json.member("scenes").unsigned_integer(), json.member("sum").non_negative_number()};
-}
-
 std::string line_of(const std::vector<double>& key, const std::vector<LapFigure>& laps) {
     nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
     std::size_t i = 0;
@@ -52,21 +46,13 @@ std::string line_of(const std::vector<double>& key, const std::vector<LapFigure>
     return to_line({{"parameters", parameters}, {"laps", figures}});
 }
 
-/// Checked before the file is changed: a file of another kind stays as it is. The header may be unfinished.
-void require_header(const fs::path& file, const std::string& header) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string first_line;
-    std::getline(stream, first_line);
-    const bool is_finished = !stream.eof();
-    if (is_finished ? first_line != header : !header.starts_with(first_line)) {
+/// Leaves whole lines of a log with this header. A file of another kind stays as it is. The header may be
+/// unfinished, as the last line if the program was stopped while it was written.
+void keep_whole_lines(const fs::path& file, const std::string& header) {
+    const std::string text = text_of(file);
+    const std::size_t end = text.find('\n');
+    if (end == std::string::npos ? !header.starts_with(text) : text.substr(0, end) != header)
         throw InputError(file, 1, "", "is the log of another tuning: other sources or options");
-    }
-}
-
-/// Removes what follows the last line feed: a line that was being written when the program was stopped.
-void drop_unfinished_line(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     std::error_code failure;
     fs::resize_file(file, text.rfind('\n') + 1, failure);  // npos + 1 is 0
     if (failure) throw InputError(file, 0, "", "cannot be written: " + failure.message());
@@ -77,13 +63,12 @@ void drop_unfinished_line(const fs::path& file) {
 EvaluationLog::EvaluationLog(fs::path file, const std::string& header, Evaluate evaluate)
     : file_(std::move(file)), evaluate_(std::move(evaluate)) {
     if (file_.empty()) return;
-    const bool is_new = !fs::exists(file_);
-    if (!is_new) {
-        require_header(file_, header);
-        drop_unfinished_line(file_);
+    const bool is_old = fs::exists(file_);
+    if (is_old) {
+        keep_whole_lines(file_, header);
         read();
     }
-    const bool has_header = !is_new && fs::file_size(file_) > 0;
+    const bool has_header = is_old && fs::file_size(file_) > 0;
     stream_.open(file_, std::ios::binary | std::ios::app);
     if (!stream_)
         throw InputError(file_, 0, "", "cannot be written: " + std::generic_category().message(errno));
@@ -101,7 +86,12 @@ void EvaluationLog::read() {
         }
         std::vector<LapFigure> laps;
         const JsonNode figures = json.member("laps");
-        for (std::size_t i = 0; i < figures.array_size(); ++i) laps.push_back(read_lap(figures.element(i)));
+        for (std::size_t i = 0; i < figures.array_size(); ++i) {
+            const JsonNode lap = figures.element(i);
+            laps.push_back({lap.member("track").string(), lap.member("rate").number(),
+                            lap.member("range").number(), lap.member("scenes").unsigned_integer(),
+                            lap.member("sum").non_negative_number()});
+        }
         figures_.insert_or_assign(std::move(key), std::move(laps));
     });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/formats/output_stream.hpp"
+#include "evaluation/formats/atomic_file.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/tuner.hpp"
 

@@ -4,7 +4,7 @@
 #include "evaluation/proofs/answer_check.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/world/ground_truth.hpp"
-#include "experiments/tuning/objective_sums.hpp"
+#include "experiments/tuning/weight_fit.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>

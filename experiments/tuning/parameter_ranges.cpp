@@ -1,8 +1,6 @@
 #include "experiments/tuning/parameter_ranges.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace conelane::experiments {
 namespace {
@@ -22,13 +20,13 @@ constexpr std::size_t kShape = 7;
 constexpr std::size_t kCosts = 4;
 constexpr std::size_t kLimits = 7;
 constexpr std::array<TunedParameter, kShape + kCosts + kLimits> kTuned{{
-    {"w_u", &P::w_u, 0.01, 3.0, true},
-    {"w_v", &P::w_v, 0.02, 5.0, true},
-    {"w_n", &P::w_n, 0.02, 5.0, true},
-    {"d_w", &P::d_w, 3.0, 5.0, false},
-    {"d_v", &P::d_v, 0.5, 4.0, true},
-    {"theta_v", &P::theta_v, 0.1, 1.5, true},
-    {"d_l", &P::d_l, 0.5, 10.0, true},
+    {"w_u", &P::unevenness_weight, 0.01, 3.0, true},
+    {"w_v", &P::facing_weight, 0.02, 5.0, true},
+    {"w_n", &P::near_end_weight, 0.02, 5.0, true},
+    {"d_w", &P::lane_width_m, 3.0, 5.0, false},
+    {"d_v", &P::facing_distance_m, 0.5, 4.0, true},
+    {"theta_v", &P::facing_angle_rad, 0.1, 1.5, true},
+    {"d_l", &P::facing_length_m, 0.5, 10.0, true},
     {"d_e", &P::d_e, 1.5, 5.0, false},
     {"w_s", &P::w_s, 0.01, 3.0, true},
     {"w_t", &P::w_t, 0.02, 5.0, true},
@@ -57,10 +55,7 @@ std::span<const TunedParameter> tuned_parameters(const RldParameters& start) {
 std::vector<double> to_unit_cube(const RldParameters& parameters) {
     std::vector<double> point;
     for (const TunedParameter& tuned : tuned_parameters(parameters)) {
-        const double value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
-        point.push_back(tuned.logarithmic
-                            ? std::log(value / tuned.lowest) / std::log(tuned.highest / tuned.lowest)
-                            : (value - tuned.lowest) / (tuned.highest - tuned.lowest));
+        point.push_back(share_of(tuned, std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest)));
     }
     return point;
 }
@@ -73,10 +68,7 @@ RldParameters from_unit_cube(std::span<const double> point, const RldParameters&
     const std::span<const TunedParameter> tuned_ones = tuned_parameters(rest);
     for (std::size_t i = 0; i < tuned_ones.size(); ++i) {
         const TunedParameter& tuned = tuned_ones[i];
-        const double value = tuned.logarithmic
-                                 ? tuned.lowest * std::pow(tuned.highest / tuned.lowest, point[i])
-                                 : tuned.lowest + point[i] * (tuned.highest - tuned.lowest);
-        parameters.*tuned.value = std::clamp(rounded(value), tuned.lowest, tuned.highest);
+        parameters.*tuned.value = std::clamp(rounded(value_at(tuned, point[i])), tuned.lowest, tuned.highest);
     }
     return parameters;
 }

@@ -3,6 +3,7 @@
 #include "conelane/rld_parameters.hpp"
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,19 @@ struct TunedParameter {
     double highest;
     bool logarithmic;  ///< equal steps are equal ratios
 };
+
+/// The share of a range, such as that of a TunedParameter or a TunableParameter, at which a value is.
+template <typename Range>
+[[nodiscard]] double share_of(const Range& range, double value) {
+    return range.logarithmic ? std::log(value / range.lowest) / std::log(range.highest / range.lowest)
+                             : (value - range.lowest) / (range.highest - range.lowest);
+}
+/// The value at a share.
+template <typename Range>
+[[nodiscard]] double value_at(const Range& range, double share) {
+    return range.logarithmic ? range.lowest * std::pow(range.highest / range.lowest, share)
+                             : range.lowest + share * (range.highest - range.lowest);
+}
 
 /// The parameters that tuning changes. The others have no effect of their own: w_b sets the unit of the
 /// objective, and d_t, theta_t with their weights and limits occur only as w_s / d_t^4, d_t^4 s_crit, w_t /

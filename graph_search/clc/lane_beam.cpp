@@ -1,7 +1,7 @@
 #include "graph_search/clc/lane_beam.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "graph_search/clc/next_vertex.hpp"
+#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "model/geometry.hpp"
 
@@ -99,8 +99,8 @@ constexpr double kMaxFirstTurn_rad = 110.0 * kDegree;
 
 constexpr Vertex kNoVertex = ~Vertex{0};
 
-/// A hash of 32 bits is shifted by this to a place among those in LaneBeam::about_.
-constexpr unsigned kAboutShift = 22;
+/// A hash of 32 bits is shifted by this to a place in LaneBeam::neighbourhoods_.
+constexpr unsigned kNeighbourhoodShift = 22;
 
 /// Bits of a state; beyond so many vertices some share a bit.
 constexpr std::size_t kBits = 64 * std::tuple_size_v<decltype(LaneBeam::State::bits)>;
@@ -179,17 +179,24 @@ void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<con
         slack_ += kNearlyAngle_rad * steepest(scores, measure);
     slack_per_m_ = kNearlyAngle_rad * steepest(scores, kTurnTimesSegmentMeasure);
     if (reach_ == nullptr) all_.reset(graph, 0);
-    about_.assign(std::size_t{1} << (32U - kAboutShift), {{kNoVertex, kNoVertex, kNoVertex}, {}});
-    onward_.clear();
+    neighbourhoods_.assign(std::size_t{1} << (32U - kNeighbourhoodShift),
+                           {{kNoVertex, kNoVertex, kNoVertex}, {}});
+    continuations_.clear();
     after_first_.assign(graph.vertex_count(), {kUnknown, kUnknown});
     after_edge_.assign(graph.directed_edge_count(), {kUnknown, kUnknown});
     states_.clear();
-    best_ = {kNotBetter, 0.0, 0.0, kNone, kNoVertex, kNoVertex, kNoVertex};
+    const Extension none{.parent = kNone, .vertex = kNoVertex, .low = kNoVertex, .high = kNoVertex};
+    best_ = none;
+    best_.score = kNotBetter;
     next_.clear();
     for (const StartPair& start : starts) {
         const std::size_t number = add_start(start);
         const auto [low, high] = std::minmax(start.left, start.right);
-        next_.push_back({states_[number].score, 0.0, 0.0, number, kNoVertex, low, high});
+        next_.push_back({.score = states_[number].score,
+                         .parent = number,
+                         .vertex = kNoVertex,
+                         .low = low,
+                         .high = high});
     }
     keep_best();
 }
@@ -205,21 +212,30 @@ bool LaneBeam::advance(SearchBudget& budget) {
         if (budget.spend(neighbours)) return false;
         // A test of membership walks back along the lane; looking around a segment visits all neighbours.
         const std::size_t work = 10 + (from.vertices[kLeft] + from.vertices[kRight]) / 8 + neighbours / 8;
-        const auto [begin, end] = onward(from, side);
+        const auto [begin, end] = continuations(from, side);
         for (std::uint32_t i = begin; i != end; ++i) {
             if (budget.spend(work)) return false;
-            const Onward& step = onward_[i];
+            const Continuation& step = continuations_[i];
             double width_m = 0.0;
             if (!has_room(number, side, step.vertex, width_m)) continue;
             const auto [low, high] = std::minmax(step.vertex, facing);
-            next_.push_back({bound_after(from, side, step, width_m), from.length_m + step.segment_m, width_m,
-                             number, step.vertex, low, high, i, false, is_lane, side});
+            next_.push_back({.score = bound_after(from, side, step, width_m),
+                             .length_m = from.length_m + step.segment_m,
+                             .width_m = width_m,
+                             .parent = number,
+                             .vertex = step.vertex,
+                             .low = low,
+                             .high = high,
+                             .step = i,
+                             .exact = false,
+                             .is_lane = is_lane,
+                             .side = side});
         }
     }
     keep_best();
     return !level_.empty() &&
            !budget.occupy(states_.size() * sizeof(State) + next_.size() * sizeof(Extension) +
-                          onward_.size() * sizeof(Onward) + after_edge_.size() * sizeof(Range));
+                          continuations_.size() * sizeof(Continuation) + after_edge_.size() * sizeof(Range));
 }
 
 std::size_t LaneBeam::run(SearchBudget& budget) {
@@ -278,29 +294,29 @@ std::size_t LaneBeam::add_start(StartPair start) {
     return states_.size() - 1;
 }
 
-bool LaneBeam::turns_to(const State& from, Side side, Vertex vertex, Onward& onward) const {
+bool LaneBeam::turns_to(const State& from, Side side, Vertex vertex, Continuation& next) const {
     const double* const values = scores_->values.data();
     const bool is_first = from.vertices[side] == 1;
-    onward.vertex = vertex;
-    onward.segment = graph_->position(vertex) - graph_->position(from.last[side]);
-    const double turning = turning_measure(from.direction[side], onward.segment);
+    next.vertex = vertex;
+    next.segment = graph_->position(vertex) - graph_->position(from.last[side]);
+    const double turning = turning_measure(from.direction[side], next.segment);
     if (turning >= (is_first ? first_turn_limit_ : turn_limit_)) return false;
-    onward.segment_m = onward.segment.norm();
-    onward.direction = onward.segment / onward.segment_m;
+    next.segment_m = next.segment.norm();
+    next.direction = next.segment / next.segment_m;
     const double turn_rad = nearly_angle_rad(turning);
-    onward.turn_rad = kNotThere;
-    onward.nearly_turn_rad = std::copysign(turn_rad, cross(from.direction[side], onward.segment));
-    onward.bound =
-        slack_ + slack_per_m_ * onward.segment_m + nearly_score<kSegmentMeasure>(values, onward.segment_m) +
-        (is_first ? nearly_score<kFirstTurnMeasure>(values, turn_rad)
-                  : nearly_score<kTurnMeasure>(values, turn_rad) +
-                        nearly_score<kTurnTimesSegmentMeasure>(values, turn_rad * onward.segment_m) +
-                        nearly_score<kSegmentChangeMeasure>(
-                            values, std::abs(onward.segment_m - from.segment_m[side])));
+    next.turn_rad = kNotThere;
+    next.nearly_turn_rad = std::copysign(turn_rad, cross(from.direction[side], next.segment));
+    next.bound = slack_ + slack_per_m_ * next.segment_m +
+                 nearly_score<kSegmentMeasure>(values, next.segment_m) +
+                 (is_first ? nearly_score<kFirstTurnMeasure>(values, turn_rad)
+                           : nearly_score<kTurnMeasure>(values, turn_rad) +
+                                 nearly_score<kTurnTimesSegmentMeasure>(values, turn_rad * next.segment_m) +
+                                 nearly_score<kSegmentChangeMeasure>(
+                                     values, std::abs(next.segment_m - from.segment_m[side])));
     return true;
 }
 
-LaneBeam::Range LaneBeam::onward(const State& from, Side side) {
+LaneBeam::Range LaneBeam::continuations(const State& from, Side side) {
     const Vertex tip = from.last[side];
     Range unknown{kUnknown, kUnknown};
     Range* range = &unknown;
@@ -316,13 +332,13 @@ LaneBeam::Range LaneBeam::onward(const State& from, Side side) {
         }
     }
     if (range->begin == kUnknown) {
-        range->begin = static_cast<std::uint32_t>(onward_.size());
+        range->begin = static_cast<std::uint32_t>(continuations_.size());
         const std::span<const Vertex> neighbours = graph_->neighbours(tip);
-        Onward onward;
+        Continuation next;
         for (const std::uint32_t place : (reach_ != nullptr ? *reach_ : all_).steps(tip)) {
-            if (turns_to(from, side, neighbours[place], onward)) onward_.push_back(onward);
+            if (turns_to(from, side, neighbours[place], next)) continuations_.push_back(next);
         }
-        range->end = static_cast<std::uint32_t>(onward_.size());
+        range->end = static_cast<std::uint32_t>(continuations_.size());
     }
     return *range;
 }
@@ -336,37 +352,37 @@ bool LaneBeam::has_room(std::size_t number, Side side, Vertex vertex, double& wi
     return width_m > bounds_.w_min_m && !is_on_lane(number, vertex);
 }
 
-double LaneBeam::bound_after(const State& from, Side side, const Onward& onward, double width_m) const {
+double LaneBeam::bound_after(const State& from, Side side, const Continuation& next, double width_m) const {
     const Side facing = opposite(side);
     const double* const values = scores_->values.data();
-    double bound = from.score + onward.bound;
+    double bound = from.score + next.bound;
     if (from.vertices[side] > 2) {
         bound +=
-            nearly_score<kTurnChangeMeasure>(values, std::abs(onward.nearly_turn_rad - from.turn_rad[side]));
+            nearly_score<kTurnChangeMeasure>(values, std::abs(next.nearly_turn_rad - from.turn_rad[side]));
     }
     if (from.vertices[facing] > 1) {
         bound += nearly_score<kSkewMeasure>(
-            values, nearly_angle_rad(turning_measure(from.direction[facing], onward.segment)));
+            values, nearly_angle_rad(turning_measure(from.direction[facing], next.segment)));
     }
     bound += nearly_score<kWidthMeasure>(values, width_m);
     bound += nearly_score<kWidthChangeMeasure>(values, std::abs(width_m - from.width_m));
-    return bound + nearly_score<kAdvanceMeasure>(values, advance_m(from, facing, onward));
+    return bound + nearly_score<kAdvanceMeasure>(values, advance_m(from, facing, next));
 }
 
-double LaneBeam::advance_m(const State& from, Side facing, const Onward& onward) const {
-    const Point along = onward.direction + from.direction[facing];
+double LaneBeam::advance_m(const State& from, Side facing, const Continuation& next) const {
+    const Point along = next.direction + from.direction[facing];
     const double along_length = along.norm();
-    const Point from_facing = graph_->position(onward.vertex) - graph_->position(from.last[facing]);
+    const Point from_facing = graph_->position(next.vertex) - graph_->position(from.last[facing]);
     return along_length == 0.0 ? 0.0 : from_facing.dot(along) / along_length;
 }
 
-void LaneBeam::measure(const State& from, Side side, Onward& onward, double width_m, Step& step) {
+void LaneBeam::measure(const State& from, Side side, Continuation& next, double width_m, Step& step) {
     const Side facing = opposite(side);
-    step.vertex = onward.vertex;
-    step.direction = onward.direction;
-    step.segment_m = onward.segment_m;
-    if (std::isnan(onward.turn_rad)) onward.turn_rad = turning_angle(from.direction[side], onward.segment);
-    step.turn_rad = onward.turn_rad;
+    step.vertex = next.vertex;
+    step.direction = next.direction;
+    step.segment_m = next.segment_m;
+    if (std::isnan(next.turn_rad)) next.turn_rad = turning_angle(from.direction[side], next.segment);
+    step.turn_rad = next.turn_rad;
     step.width_m = width_m;
     StepMeasures& measures = step.measures;
     measures.fill(kNotThere);
@@ -383,25 +399,28 @@ void LaneBeam::measure(const State& from, Side side, Onward& onward, double widt
         }
     }
     if (from.vertices[facing] > 1) {
-        measures[kSkewMeasure] = std::abs(turning_angle(from.direction[facing], onward.segment));
+        measures[kSkewMeasure] = std::abs(turning_angle(from.direction[facing], next.segment));
     }
     measures[kWidthMeasure] = step.width_m;
     measures[kWidthChangeMeasure] = std::abs(step.width_m - from.width_m);
-    measures[kAdvanceMeasure] = advance_m(from, facing, onward);
-    const Neighbourhood& cones = about(from.last[side], onward.vertex, from.last[facing]);
+    measures[kAdvanceMeasure] = advance_m(from, facing, next);
+    const Neighbourhood& cones = cones_around(from.last[side], next.vertex, from.last[facing]);
     measures[kBesideMeasure] = cones.beside;
     measures[kCloseMeasure] = cones.close;
     measures[kInsideMeasure] = cones.inside;
 }
 
-const Neighbourhood& LaneBeam::about(Vertex tip, Vertex vertex, Vertex facing) {
+const Neighbourhood& LaneBeam::cones_around(Vertex tip, Vertex vertex, Vertex facing) {
     const std::array<Vertex, 3> vertices{tip, vertex, facing};
-    About& known = about_[(tip * 0x9e3779b1U ^ vertex * 0x85ebca6bU ^ facing * 0xc2b2ae35U) >> kAboutShift];
+    KnownNeighbourhood& known =
+        neighbourhoods_[(tip * 0x9e3779b1U ^ vertex * 0x85ebca6bU ^ facing * 0xc2b2ae35U) >>
+                        kNeighbourhoodShift];
     if (known.vertices != vertices) {
-        const Point& point = graph_->position(vertex);
-        const Point& facing_tip = graph_->position(facing);
-        known = {vertices,
-                 neighbourhood(*graph_, tip, graph_->position(tip), facing_tip, point, point, facing_tip)};
+        known = {vertices, neighbourhood(*graph_, tip,
+                                         {.tip = graph_->position(tip),
+                                          .point = graph_->position(vertex),
+                                          .facing = graph_->position(facing),
+                                          .leaves_ends_out = true})};
     }
     return known.cones;
 }
@@ -409,11 +428,11 @@ const Neighbourhood& LaneBeam::about(Vertex tip, Vertex vertex, Vertex facing) {
 std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
     const State& from = states_[number];
     const Side side = next_side(from);
-    Onward onward;
+    Continuation next;
     double width_m = 0.0;
-    if (!turns_to(from, side, vertex, onward) || !has_room(number, side, vertex, width_m)) return kNone;
+    if (!turns_to(from, side, vertex, next) || !has_room(number, side, vertex, width_m)) return kNone;
     Step step;
-    measure(from, side, onward, width_m, step);
+    measure(from, side, next, width_m, step);
     return add_state(number, side, step, from.score + scores_->score(step.measures));
 }
 
@@ -486,7 +505,7 @@ void LaneBeam::keep_best() {
             continue;
         }
         const State& from = states_[parent];
-        measure(from, side, onward_[extension.step], extension.width_m, step);
+        measure(from, side, continuations_[extension.step], extension.width_m, step);
         extension.score = last.score = from.score + scores_->score(step.measures);
         extension.exact = true;
         extension.step = static_cast<std::uint32_t>(steps_.size());

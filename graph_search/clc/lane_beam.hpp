@@ -1,10 +1,10 @@
 #pragma once
 
 #include "conelane/scene.hpp"
+#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
-#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "graph_search/shared/search_graph.hpp"
 
@@ -131,7 +131,7 @@ class LaneBeam {
   private:
     /// A vertex that may come next on a side. All of it depends on the side's last two vertices only, so it
     /// is found once for each directed edge that the search meets.
-    struct Onward {
+    struct Continuation {
         Vertex vertex;
         Point segment;
         Point direction;
@@ -140,15 +140,14 @@ class LaneBeam {
         double turn_rad;         ///< the same exactly; NaN until a step is measured
         double bound;  ///< on its scores and on those that are not known before the step is measured
     };
-    /// A range of `onward_`.
+    /// A range of `continuations_`.
     struct Range {
         std::uint32_t begin;
         std::uint32_t end;
     };
     static constexpr std::uint32_t kUnknown = ~std::uint32_t{0};
-    /// A neighbourhood that was looked at. Most are asked for several times, for lanes that differ farther
-    /// back.
-    struct About {
+    /// A neighbourhood that is known. Most are asked for several times, for lanes that differ farther back.
+    struct KnownNeighbourhood {
         std::array<Vertex, 3> vertices;
         Neighbourhood cones;
     };
@@ -163,14 +162,14 @@ class LaneBeam {
     };
     /// A state that may follow; only those that go on are stored.
     struct Extension {
-        double score;  ///< an upper bound until the step was measured
-        double length_m;
-        double width_m;
+        double score = 0.0;  ///< an upper bound until the step was measured
+        double length_m = 0.0;
+        double width_m = 0.0;
         std::size_t parent;
         Vertex vertex;  ///< none: the parent itself, a starting pair
         Vertex low;     ///< the last vertices of both sides
         Vertex high;
-        std::uint32_t step = 0;  ///< in `steps_` if it was measured, else in `onward_`
+        std::uint32_t step = 0;  ///< in `steps_` if it was measured, else in `continuations_`
         bool exact = true;
         bool is_lane = false;  ///< two vertices a side
         Side side = kLeft;     ///< of the vertex
@@ -183,21 +182,21 @@ class LaneBeam {
     };
 
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex vertex) const;
-    /// Whether the vertex turns the side by less than the limit; sets `onward` if so.
-    [[nodiscard]] bool turns_to(const State& from, Side side, Vertex vertex, Onward& onward) const;
+    /// Whether the vertex turns the side by less than the limit; sets `next` if so.
+    [[nodiscard]] bool turns_to(const State& from, Side side, Vertex vertex, Continuation& next) const;
     /// All vertices within reach that the side may turn to.
-    [[nodiscard]] Range onward(const State& from, Side side);
+    [[nodiscard]] Range continuations(const State& from, Side side);
     /// Whether the vertex is far enough from the other side, and not on the lane; sets the width.
     [[nodiscard]] bool has_room(std::size_t number, Side side, Vertex vertex, double& width_m) const;
     /// At least the score of the state after that step, and above it only by what the neighbourhood may take
     /// off and by rounded angles. Takes a fraction of the time of `measure`.
-    [[nodiscard]] double bound_after(const State& from, Side side, const Onward& onward,
+    [[nodiscard]] double bound_after(const State& from, Side side, const Continuation& next,
                                      double width_m) const;
     /// How far the vertex is ahead of the last one of the facing side, along the lane.
-    [[nodiscard]] double advance_m(const State& from, Side facing, const Onward& onward) const;
-    void measure(const State& from, Side side, Onward& onward, double width_m, Step& step);
-    /// What lies about the step from `tip` to `vertex`, beside the last vertex of the other side.
-    [[nodiscard]] const Neighbourhood& about(Vertex tip, Vertex vertex, Vertex facing);
+    [[nodiscard]] double advance_m(const State& from, Side facing, const Continuation& next) const;
+    void measure(const State& from, Side side, Continuation& next, double width_m, Step& step);
+    /// The cones around the step from `tip` to `vertex`, but for the last vertex of the other side.
+    [[nodiscard]] const Neighbourhood& cones_around(Vertex tip, Vertex vertex, Vertex facing);
     /// Adds the state after that step, which has that score.
     std::size_t add_state(std::size_t number, Side side, const Step& step, double score);
     /// Makes a level of the best ones in `next_`, and replaces `best_` if there is a better one. Measures
@@ -215,15 +214,15 @@ class LaneBeam {
     double first_turn_limit_ = 0.0;
     Point heading_{0.0, 0.0};
     std::size_t width_ = 0;
-    /// What a step adds to the score as such, at least what its neighbourhood adds, and at least what
-    /// rounding and nearly known angles may take off a bound.
+    /// The part of a bound that all steps have in common: the score of making a step, the highest scores of
+    /// its neighbourhood, and how much rounding and approximate angles may lower the other scores.
     double slack_ = 0.0;
-    double slack_per_m_ = 0.0;  ///< the last part again, for each metre of the segment
+    double slack_per_m_ = 0.0;  ///< how much approximate angles may lower them for each metre of the segment
     StepReach all_;             ///< used if no reach is given
-    std::vector<Onward> onward_;
-    std::vector<Range> after_first_;  ///< by vertex
-    std::vector<Range> after_edge_;   ///< by directed edge
-    std::vector<About> about_;        ///< by a hash of the vertices, the last one with each
+    std::vector<Continuation> continuations_;
+    std::vector<Range> after_first_;                  ///< by vertex
+    std::vector<Range> after_edge_;                   ///< by directed edge
+    std::vector<KnownNeighbourhood> neighbourhoods_;  ///< by a hash of the vertices, the last one with each
     std::vector<State> states_;
     std::vector<std::size_t> level_;
     std::vector<Extension> next_;

@@ -1,7 +1,7 @@
 #include "graph_search/clc/lane_features.hpp"
 
+#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/lane_width.hpp"
-#include "graph_search/clc/left_right.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,97 +10,84 @@
 namespace conelane {
 namespace {
 
-struct NamedFeature {
-    LaneFeature feature;
-    std::string_view name;
-};
-constexpr std::array<NamedFeature, kLaneFeatureCount> kNamed{{
-    {kLength, "length_m"},
-    {kConesLeft, "cones_left"},
-    {kConesRight, "cones_right"},
-    {kWidthVariance, "width_variance_m2"},
-    {kSegmentLengthVarianceLeft, "segment_length_variance_m2_left"},
-    {kSegmentLengthVarianceRight, "segment_length_variance_m2_right"},
-    {kTurnVarianceLeft, "turn_variance_rad2_left"},
-    {kTurnVarianceRight, "turn_variance_rad2_right"},
-    {kMaxShare, "longest_share"},
-    {kStartAsymmetry, "start_asymmetry_m"},
-    {kStartDistance, "start_distance_m"},
-    {kSceneCones, "cones"},
-    {kEndDeviation, "end_deviation"},
-    {kConesInside, "cones_inside"},
-    {kMeanDegree, "mean_degree"},
-    {kSharpestTurn, "sharpest_turn_rad"},
-    {kSharpestTurnChange, "sharpest_turn_change_rad"},
-    {kMaxSegment, "longest_segment_m"},
-    {kMeanSquaredSkew, "mean_squared_skew"},
-    {kMeanAcross, "mean_across_m"},
-    {kAcrossVariance, "across_variance_m2"},
-    {kMeanSegmentLengthLeft, "mean_segment_length_m_left"},
-    {kMeanSegmentLengthRight, "mean_segment_length_m_right"},
-    {kAbsoluteMeanTurnLeft, "absolute_mean_turn_rad_left"},
-    {kAbsoluteMeanTurnRight, "absolute_mean_turn_rad_right"},
-    {kMeanSquaredTurnChangeLeft, "mean_squared_turn_change_rad2_left"},
-    {kMeanSquaredTurnChangeRight, "mean_squared_turn_change_rad2_right"},
-    {kMinSegment, "shortest_segment_m"},
-    {kStartSkew, "start_skew"},
-    {kConesBeside, "cones_beside"},
-    {kEndTurn, "end_turn_rad"},
-    {kEndSegment, "end_segment_m"},
-    {kEndTurnChange, "end_turn_change_rad"},
-    {kMaxOffset, "largest_offset_m"},
-    {kRmsOffset, "rms_offset_m"},
-    {kMaxSkew, "largest_skew"},
-    {kMinWidth, "narrowest_m"},
-    {kMaxWidth, "widest_m"},
-    {kMaxWidthChange, "largest_width_change_m"},
-    {kNearSharpestTurn, "near_sharpest_turn_rad"},
-    {kNearSharpestTurnChange, "near_sharpest_turn_change_rad"},
-    {kNearRmsTurnChange, "near_rms_turn_change_rad"},
-    {kNearLargestOffset, "near_largest_offset_m"},
-    {kNearRmsOffset, "near_rms_offset_m"},
-    {kNearLargestSegmentChange, "near_largest_segment_change_m"},
-    {kNearRmsSegmentChange, "near_rms_segment_change_m"},
-    {kNearLongestSegment, "near_longest_segment_m"},
-    {kNearShortestSegment, "near_shortest_segment_m"},
-    {kNearLargestSkew, "near_largest_skew"},
-    {kNearRmsSkew, "near_rms_skew"},
-    {kNearCurvatureDifference, "near_curvature_difference_rad_per_m"},
-    {kNearConesInside, "near_cones_inside"},
-    {kNearConesBeside, "near_cones_beside"},
-    {kNearConesClose, "near_cones_close"},
-    {kNearCloseness, "near_closeness"},
-    {kNearVertices, "near_vertices"},
-    {kNearNarrowest, "near_narrowest_m"},
-    {kNearWidest, "near_widest_m"},
-    {kNearMeanWidth, "near_mean_width_m"},
-    {kNearWidthDeviation, "near_width_deviation_m"},
-    {kNearLargestWidthChange, "near_largest_width_change_m"},
-    {kNearRmsWidthChange, "near_rms_width_change_m"},
-    {kStartLead, "start_lead_m"},
-    {kStartShift, "start_shift_m"},
-    {kStartNearestSide, "start_nearest_side_m"},
-    {kStartNearestAhead, "start_nearest_ahead_m"},
-    {kStartFarthestAhead, "start_farthest_ahead_m"},
-}};
+/// In the order of LaneFeature.
+constexpr std::array<std::string_view, kLaneFeatureCount> kNames{"length_m",
+                                                                 "cones_left",
+                                                                 "cones_right",
+                                                                 "width_variance_m2",
+                                                                 "segment_length_variance_m2_left",
+                                                                 "segment_length_variance_m2_right",
+                                                                 "turn_variance_rad2_left",
+                                                                 "turn_variance_rad2_right",
+                                                                 "longest_share",
+                                                                 "start_asymmetry_m",
+                                                                 "start_distance_m",
+                                                                 "cones",
+                                                                 "end_deviation",
+                                                                 "cones_inside",
+                                                                 "mean_degree",
+                                                                 "sharpest_turn_rad",
+                                                                 "sharpest_turn_change_rad",
+                                                                 "longest_segment_m",
+                                                                 "mean_squared_skew",
+                                                                 "mean_across_m",
+                                                                 "across_variance_m2",
+                                                                 "mean_segment_length_m_left",
+                                                                 "mean_segment_length_m_right",
+                                                                 "absolute_mean_turn_rad_left",
+                                                                 "absolute_mean_turn_rad_right",
+                                                                 "mean_squared_turn_change_rad2_left",
+                                                                 "mean_squared_turn_change_rad2_right",
+                                                                 "shortest_segment_m",
+                                                                 "start_skew",
+                                                                 "cones_beside",
+                                                                 "end_turn_rad",
+                                                                 "end_segment_m",
+                                                                 "end_turn_change_rad",
+                                                                 "largest_offset_m",
+                                                                 "rms_offset_m",
+                                                                 "largest_skew",
+                                                                 "narrowest_m",
+                                                                 "widest_m",
+                                                                 "largest_width_change_m",
+                                                                 "near_sharpest_turn_rad",
+                                                                 "near_sharpest_turn_change_rad",
+                                                                 "near_rms_turn_change_rad",
+                                                                 "near_largest_offset_m",
+                                                                 "near_rms_offset_m",
+                                                                 "near_largest_segment_change_m",
+                                                                 "near_rms_segment_change_m",
+                                                                 "near_longest_segment_m",
+                                                                 "near_shortest_segment_m",
+                                                                 "near_largest_skew",
+                                                                 "near_rms_skew",
+                                                                 "near_curvature_difference_rad_per_m",
+                                                                 "near_cones_inside",
+                                                                 "near_cones_beside",
+                                                                 "near_cones_close",
+                                                                 "near_closeness",
+                                                                 "near_vertices",
+                                                                 "near_narrowest_m",
+                                                                 "near_widest_m",
+                                                                 "near_mean_width_m",
+                                                                 "near_width_deviation_m",
+                                                                 "near_largest_width_change_m",
+                                                                 "near_rms_width_change_m",
+                                                                 "start_lead_m",
+                                                                 "start_shift_m",
+                                                                 "start_nearest_side_m",
+                                                                 "start_nearest_ahead_m",
+                                                                 "start_farthest_ahead_m"};
+static_assert(kNames[kLength] == "length_m" && kNames[kSceneCones] == "cones" &&
+              kNames[kMinWidth] == "narrowest_m" && kNames[kStartFarthestAhead] == "start_farthest_ahead_m");
 
-constexpr std::array<std::string_view, kLaneFeatureCount> kNames = [] {
-    std::array<std::string_view, kLaneFeatureCount> names;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (kNamed[i].feature != i) throw "a feature stands in another place than LaneFeature has it";
-        names[i] = kNamed[i].name;
-    }
-    return names;
-}();
-
-/// Distance of `middle`, across the chord of its neighbours, from the cubic through the two points before and
-/// the two after it at even steps [m].
-double offset_m(const Point& second_before, const Point& before, const Point& middle, const Point& after,
-                const Point& second_after) {
-    const Point expected = (4.0 * (before + after) - (second_before + second_after)) / 6.0;
-    const Point chord = after - before;
+/// Distance of the third of five points along a boundary, across the chord of its neighbours, from the cubic
+/// through the other four at even steps [m].
+double offset_m(const std::array<Point, 5>& along) {
+    const Point expected = (4.0 * (along[1] + along[3]) - (along[0] + along[4])) / 6.0;
+    const Point chord = along[3] - along[1];
     const double chord_m = chord.norm();
-    return chord_m == 0.0 ? 0.0 : std::abs(cross(chord, middle - expected)) / chord_m;
+    return chord_m == 0.0 ? 0.0 : std::abs(cross(chord, along[2] - expected)) / chord_m;
 }
 
 double curvature(double turned_rad, double length_m) {
@@ -111,11 +98,6 @@ double curvature(double turned_rad, double length_m) {
 
 std::span<const std::string_view> lane_feature_names() {
     return kNames;
-}
-
-double Moments::variance() const {
-    if (count == 0.0) return 0.0;
-    return std::max(0.0, mean_of_squares() - mean() * mean());
 }
 
 PaperFeatures paper_features(std::span<const Point> left, std::span<const Point> right, bool closed) {
@@ -211,7 +193,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         }
         if (own.vertices > 3) {
             step.offset_m =
-                offset_m(own.before_tip[2], own.before_tip[1], own.before_tip[0], tip_[side], point);
+                offset_m({own.before_tip[2], own.before_tip[1], own.before_tip[0], tip_[side], point});
         }
         own.turns.add(step.turn_rad);
         own.last_turn_rad = step.turn_rad;
@@ -219,7 +201,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         start_skew_ = std::max(start_skew_, (direction - heading_).norm());
     }
     if (facing.vertices > 1) step.skew = (direction - facing.direction).norm();
-    step.cones = neighbourhood(graph, vertex, tip_[side], facing_tip, point);
+    step.cones = neighbourhood(graph, vertex, {.tip = tip_[side], .point = point, .facing = facing_tip});
     // The length up to the beginning of the step.
     const bool is_near = own.segment_lengths.sum <= kNearPart_m;
     add(step, side, whole_);

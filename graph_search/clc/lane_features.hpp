@@ -2,6 +2,7 @@
 
 #include "graph_search/clc/lane_width.hpp"
 #include "graph_search/clc/neighbourhood.hpp"
+#include "graph_search/shared/moments.hpp"
 #include "graph_search/shared/search_graph.hpp"
 #include "model/geometry.hpp"
 
@@ -119,23 +120,6 @@ using LaneFeatures = std::array<double, kLaneFeatureCount>;
 /// Precondition: no boundary is empty; for a closed lane, at least three points each.
 [[nodiscard]] PaperFeatures paper_features(std::span<const Point> left, std::span<const Point> right,
                                            bool closed = false);
-
-/// Count, sum and sum of squares for a variance.
-struct Moments {
-    double count = 0.0;
-    double sum = 0.0;
-    double sum_of_squares = 0.0;
-
-    void add(double value) {
-        count += 1.0;
-        sum += value;
-        sum_of_squares += value * value;
-    }
-    /// 0 if nothing was added; so are the others.
-    [[nodiscard]] double mean() const { return count == 0.0 ? 0.0 : sum / count; }
-    [[nodiscard]] double mean_of_squares() const { return count == 0.0 ? 0.0 : sum_of_squares / count; }
-    [[nodiscard]] double variance() const;
-};
 
 /// A step of a boundary belongs to the near part of the lane if it begins within this distance along the
 /// boundary [m]. A lane that is wrong there is a critical failure, and a fault at one vertex hardly shows in

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace conelane {
 namespace {
@@ -18,9 +19,12 @@ double sum(const Masks& counts) {
     return -static_cast<double>(counts[0] + counts[1] + counts[2] + counts[3]);
 }
 
-CONELANE_SIMD void count(const double* x, const double* y, std::int64_t size, const Point& tip,
-                         const Point& facing, const Point& point, const Point& left_out,
-                         const Point& left_out_too, Neighbourhood& result) {
+CONELANE_SIMD void count(const double* x, const double* y, std::int64_t size, const NewSegment& added,
+                         Neighbourhood& result) {
+    constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+    const auto& [tip, point, facing, leaves_ends_out] = added;
+    const Point left_out = leaves_ends_out ? point : Point(kNowhere, kNowhere);
+    const Point left_out_too = leaves_ends_out ? facing : Point(kNowhere, kNowhere);
     const Point segment = point - tip;
     const double segment_m = segment.norm();
     const Point direction = segment / segment_m;
@@ -67,12 +71,10 @@ CONELANE_SIMD void count(const double* x, const double* y, std::int64_t size, co
 
 }  // namespace
 
-Neighbourhood neighbourhood(const SearchGraph& graph, Vertex vertex, const Point& tip, const Point& facing,
-                            const Point& point, const Point& left_out, const Point& left_out_too) {
+Neighbourhood neighbourhood(const SearchGraph& graph, Vertex vertex, const NewSegment& added) {
     Neighbourhood result;
     const SearchGraph::Positions neighbours = graph.neighbour_positions(vertex);
-    count(neighbours.x, neighbours.y, static_cast<std::int64_t>(neighbours.size), tip, facing, point,
-          left_out, left_out_too, result);
+    count(neighbours.x, neighbours.y, static_cast<std::int64_t>(neighbours.size), added, result);
     return result;
 }
 

@@ -1,7 +1,7 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 
-#include "graph_search/clc/lane_closing.hpp"
-#include "graph_search/clc/left_right.hpp"
+#include "graph_search/clc/deciders.hpp"
+#include "graph_search/clc/lane_constraints.hpp"
 
 #include <algorithm>
 
@@ -148,7 +148,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         Call& call = calls_.back();
         const LaneConstraints::State& lane = constraints_.state();
         const std::array<bool, 2> extensible{drop_visited(call, kLeft), drop_visited(call, kRight)};
-        const bool given_up = rules_.backtracking && lane.backtrack(extensible[kLeft], extensible[kRight]);
+        const bool given_up = lane.backtrack(extensible[kLeft], extensible[kRight]);
         if (given_up || (!extensible[kLeft] && !extensible[kRight])) {
             end_call();
             continue;
@@ -181,18 +181,18 @@ void PathPairEnumeration::begin(const SearchGraph& graph, StartPair start, const
     for (std::vector<std::uint8_t>& side : on_path_) side.assign(graph.vertex_count(), 0);
     on_path_[kLeft][start.left] = 1;
     on_path_[kRight][start.right] = 1;
-    Call first{
-        {next_vertex_->after_start(start.left, heading), next_vertex_->after_start(start.right, heading)},
-        {0, 0},
-        0,
-        {kNoVertex, kNoVertex},
-        {start.left, start.right},
-        {heading, heading},
-        {0.0, 0.0},
-        PathPairFingerprint(start),
-        {},
-        pairs.add_step(PathPairs::kNone, kLeft, start.left),
-        kLeft};
+    Call first{.unvisited = {next_vertex_->after_start(start.left, heading),
+                             next_vertex_->after_start(start.right, heading)},
+               .tried = {0, 0},
+               .discrepancies = 0,
+               .visited_early = {kNoVertex, kNoVertex},
+               .last = {start.left, start.right},
+               .direction = {heading, heading},
+               .length_m = {0.0, 0.0},
+               .fingerprint = PathPairFingerprint(start),
+               .growth = {},
+               .step = pairs.add_step(PathPairs::kNone, kLeft, start.left),
+               .pushed = kLeft};
     first.step = pairs.add_step(first.step, kRight, start.right);
     if (rules_.with_features) first.growth.start(graph, start.left, start.right, heading);
     calls_.assign(1, first);
@@ -242,8 +242,7 @@ void PathPairEnumeration::extend(const Choice& choice, const std::array<bool, 2>
     const Point segment = graph_->position(next.vertex) - graph_->position(from);
     constraints_.push(side, graph_->position(next.vertex), first_segment || next.turning < phi_max_);
     const LaneConstraints::State& extended = constraints_.state();
-    if (rules_.backtracking && !extended.feasible &&
-        extended.backtrack(extensible[kLeft], extensible[kRight])) {
+    if (!extended.feasible && extended.backtrack(extensible[kLeft], extensible[kRight])) {
         constraints_.pop(side);
         follows_guide_ = false;
         return;

@@ -1,9 +1,8 @@
 #pragma once
 
+#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/lane_features.hpp"
-#include "graph_search/clc/next_vertex.hpp"
-#include "graph_search/clc/step_reach.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "graph_search/shared/search_graph.hpp"
 
@@ -28,8 +27,6 @@ struct EnumerationRules {
     LaneBounds bounds;
     double d_max_m = 5.5;  ///< for closing; must be that of the search graph
     WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
-    /// Without it the search goes on even if no extension can become feasible: slower, with the same result.
-    bool backtracking = true;
     double next_vertex_distance_weight = 0.0;  ///< of NVD; 0: equation (3)
     /// Limited-discrepancy search: lanes with more discrepancies are left out. A vertex in place k + 1 of
     /// NVD's order counts k; a lane's are added up.

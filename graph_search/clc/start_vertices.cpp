@@ -15,13 +15,13 @@ StartPairMeasures start_pair_measures(const Scene& scene, StartPair pair) {
     const double right_ahead_m = heading.dot(right);
     const double left_side_m = cross(heading, left);
     const double right_side_m = -cross(heading, right);
-    return {std::hypot(left_ahead_m - right_ahead_m, left_side_m - right_side_m),
-            std::max(left.norm(), right.norm()),
-            std::abs(left_ahead_m - right_ahead_m),
-            std::abs(left_side_m - right_side_m),
-            std::min(left_side_m, right_side_m),
-            std::min(left_ahead_m, right_ahead_m),
-            std::max(left_ahead_m, right_ahead_m)};
+    return {.asymmetry_m = std::hypot(left_ahead_m - right_ahead_m, left_side_m - right_side_m),
+            .distance_m = std::max(left.norm(), right.norm()),
+            .lead_m = std::abs(left_ahead_m - right_ahead_m),
+            .shift_m = std::abs(left_side_m - right_side_m),
+            .nearest_side_m = std::min(left_side_m, right_side_m),
+            .nearest_ahead_m = std::min(left_ahead_m, right_ahead_m),
+            .farthest_ahead_m = std::max(left_ahead_m, right_ahead_m)};
 }
 
 void StartPairs::find(const Scene& scene, const StartVertexRules& rules, const LaneBounds& bounds) {

@@ -65,7 +65,7 @@ void BoundarySearch::start(const FrontMap& map) {
         const Point& at = map.position(cone);
         if (std::abs(at.y()) > rules_.start_aside_m) continue;
         const double score = -squared(std::max(0.0, at.x()) / kStartAhead_m);
-        next_.push_back({cone, kNone, 1, score, {1.0, 0.0}, 0.0, 0.0, kLeft});
+        next_.push_back({.last = cone, .parent = kNone, .count = 1, .score = score, .direction = {1.0, 0.0}});
     }
     keep_best(0);
 }
@@ -85,14 +85,13 @@ void BoundarySearch::extend(FrontMap& map, std::size_t number) {
             if (turn_size_rad > rules_.largest_bridging_turn_rad || map.neighbourhood(chain.last, i).blocked)
                 continue;
         }
-        Chain longer{edge.to,
-                     number,
-                     chain.count + 1,
-                     chain.score + std::min(1.0, length_m / kFullSegment_m),
-                     edge.direction,
-                     length_m,
-                     0.0,
-                     chain.side};
+        Chain longer{.last = edge.to,
+                     .parent = number,
+                     .count = chain.count + 1,
+                     .score = chain.score + std::min(1.0, length_m / kFullSegment_m),
+                     .direction = edge.direction,
+                     .segment_m = length_m,
+                     .side = chain.side};
         if (chain.count == 1) {
             if (turn_size_rad > rules_.largest_first_turn_rad) continue;
         } else {

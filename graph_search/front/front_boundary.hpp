@@ -54,9 +54,9 @@ class BoundarySearch {
         std::size_t count;
         double score;
         Point direction;
-        double segment_m;
-        double turn_rad;
-        Side side;  ///< known from the third cone on
+        double segment_m = 0.0;
+        double turn_rad = 0.0;
+        Side side = kLeft;  ///< known from the third cone on
     };
 
     [[nodiscard]] bool is_boundary(const Chain& chain) const;

@@ -124,7 +124,7 @@ class FrontDetector final : public LaneDetector {
             contenders_.push_back({lane.parent, lane.score});
         }
         if (contenders_.empty()) return false;
-        judge_.look(front_, contenders_);
+        judge_.compare(front_, contenders_);
         for (const std::size_t place : judge_.order()) {
             if (!take(contenders_[place].node)) continue;
             chosen_ = place;

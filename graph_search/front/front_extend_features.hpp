@@ -1,6 +1,5 @@
 #pragma once
 
-#include "graph_search/front/front_feature_scales.hpp"
 #include "graph_search/front/front_feature_schema.hpp"
 #include "graph_search/front/front_features.hpp"
 #include "graph_search/front/front_map.hpp"
@@ -12,6 +11,18 @@
 #include <cstddef>
 
 namespace conelane {
+
+// Divisors that bring values to about 1, and limits at which values are clamped.
+inline constexpr double kLengthScale_m = 4.0;
+inline constexpr double kViewScale_m = 10.0;
+inline constexpr double kFarBeyond = 2.0;
+inline constexpr double kPartnerReach_m = 3.0;
+inline constexpr double kDefaultWidth = 0.9;
+inline constexpr float kMaxCounted = 3.0F;
+
+inline float scaled(double value, double unit, double most = 4.0) {
+    return static_cast<float>(std::clamp(value / unit, -most, most));
+}
 
 /// What the color of a cone says, seen from a side; all 0 if no cone of the scene has one.
 struct ConeColors {

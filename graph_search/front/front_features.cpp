@@ -1,7 +1,6 @@
 #include "graph_search/front/front_features.hpp"
 
 #include "graph_search/front/front_extend_features.hpp"
-#include "graph_search/front/front_feature_scales.hpp"
 #include "graph_search/front/front_feature_schema.hpp"
 
 #include <algorithm>
@@ -383,9 +382,17 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
                   map.color(own.cones[0]).speaks_for(side),
                   map.color(other.cones[0]).speaks_for(opposite(side))};
     }
-    return values_of<kStateSchema>(StateSeen{own, other, measures, in, skew_rad, (facing - at).norm(), lag_m,
-                                             distance_m, map.view_radius_m(), map.density(own.cones[0]),
-                                             colors});
+    return values_of<kStateSchema>(StateSeen{.own = own,
+                                             .other = other,
+                                             .measures = measures,
+                                             .in = in,
+                                             .skew_rad = skew_rad,
+                                             .ends_apart_m = (facing - at).norm(),
+                                             .lag_m = lag_m,
+                                             .distance_m = distance_m,
+                                             .view_m = map.view_radius_m(),
+                                             .density = map.density(own.cones[0]),
+                                             .colors = colors});
 }
 
 ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side, const FrontMove& move,
@@ -434,13 +441,26 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
         const double nearness = std::max(0.0, 1.0 - std::sqrt(partner_m2) / kPartnerReach_m);
         colors.partner = static_cast<float>(nearness) * map.color(partner).speaks_for(opposite(side));
     }
-    return values_of<kExtendSchema>(ExtendSeen{measures,   about,          edge,
-                                               other,      side,           at,
-                                               facing,     length_m,       turn_rad,
-                                               change_rad, turn_other_rad, skew_rad,
-                                               width_m,    mean_width_m,   map.view_radius_m(),
-                                               partner_m2, log_own,        log_other,
-                                               inside,     colors});
+    return values_of<kExtendSchema>(ExtendSeen{.measures = measures,
+                                               .about = about,
+                                               .edge = edge,
+                                               .other = other,
+                                               .side = side,
+                                               .at = at,
+                                               .facing = facing,
+                                               .length_m = length_m,
+                                               .turn_rad = turn_rad,
+                                               .change_rad = change_rad,
+                                               .turn_other_rad = turn_other_rad,
+                                               .skew_rad = skew_rad,
+                                               .width_m = width_m,
+                                               .mean_width_m = mean_width_m,
+                                               .view_m = map.view_radius_m(),
+                                               .partner_m2 = partner_m2,
+                                               .log_own = log_own,
+                                               .log_other = log_other,
+                                               .inside = inside,
+                                               .colors = colors});
 }
 
 StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
@@ -472,14 +492,28 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     }
     const bool color_known = map.has_colors() && next_cone != kNoCone;
     const float color_next = color_known ? map.color(next_cone).speaks_for(side) : 0.0F;
-    return values_of<kStopSchema>(StopSeen{at, at.norm(), view_m, next, straight, other_next, next_off_m,
-                                           next_cones, straight_off_m, moves, smoothest, color_next,
-                                           color_goes_on});
+    return values_of<kStopSchema>(StopSeen{.at = at,
+                                           .distance_m = at.norm(),
+                                           .view_m = view_m,
+                                           .next = next,
+                                           .straight = straight,
+                                           .other_next = other_next,
+                                           .next_off_m = next_off_m,
+                                           .next_cones = next_cones,
+                                           .straight_off_m = straight_off_m,
+                                           .moves = moves,
+                                           .smoothest = smoothest,
+                                           .color_next = color_next,
+                                           .color_goes_on = color_goes_on});
 }
 
 StartCone start_cone(FrontMap& map, Vertex cone) {
     const Point& at = map.position(cone);
-    StartCone start{cone, 0.0F, 2.0F, 2.0F, map.density(cone)};
+    StartCone start{.cone = cone,
+                    .behind = 0.0F,
+                    .continuation = 2.0F,
+                    .predecessor = 2.0F,
+                    .density = map.density(cone)};
     for (const FrontEdge& edge : map.edges(cone)) {
         const Point way = map.position(edge.to) - at;
         if (way.x() < 0.0 && std::abs(way.y()) < kStrip_m && map.position(edge.to).x() > -0.6) {
@@ -516,8 +550,17 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
     }
     ConeColors colors;
     if (map.has_colors()) colors = colors_of(map, own.cone, side);
-    return values_of<kStartSchema>(
-        StartSeen{own, other, a, b, own_out_m, other_out_m, width_m, lead_m, middle_m, inside, colors});
+    return values_of<kStartSchema>(StartSeen{.own = own,
+                                             .other = other,
+                                             .a = a,
+                                             .b = b,
+                                             .own_out_m = own_out_m,
+                                             .other_out_m = other_out_m,
+                                             .width_m = width_m,
+                                             .lead_m = lead_m,
+                                             .middle_m = middle_m,
+                                             .inside = inside,
+                                             .colors = colors});
 }
 
 }  // namespace conelane

@@ -258,7 +258,7 @@ FrontJudge::FrontJudge(const FrontWeights& weights) : plain_(valid(weights)) {
     if (weights.colored) colored_.emplace(*weights.colored);
 }
 
-void FrontJudge::look(FrontSearch& search, std::span<const Contender> contenders) {
+void FrontJudge::compare(FrontSearch& search, std::span<const Contender> contenders) {
     sees_colors_ = colored_ && search.map().has_colors();
     scores_.clear();
     for (const Contender& lane : contenders) scores_.push_back(lane.score - search.node(lane.node).bonus);
@@ -361,8 +361,14 @@ void FrontJudge::see_cones(FrontSearch& search) {
         min_share_[i] = std::min(static_cast<float>(share), is_first ? 1.0F : min_share_[step.parent]);
         const double own_score = is_first ? plain(node) : plain(node) - plain(search.node(node.parent));
         const std::array<float, kConeFeatures> of_cone =
-            values_of<kConeSchema>(ConeSeen{is_first, own_score, static_cast<double>(node.margin), share,
-                                            min_share_[i], lead, lane_lead, probability_[best]});
+            values_of<kConeSchema>(ConeSeen{.is_first = is_first,
+                                            .own_score = own_score,
+                                            .margin = static_cast<double>(node.margin),
+                                            .share = share,
+                                            .min_share = min_share_[i],
+                                            .lead = lead,
+                                            .lane_lead = lane_lead,
+                                            .probability = probability_[best]});
         step.inputs = {};
         std::ranges::copy(of_cone, step.inputs.begin());
         if (!is_first) {
@@ -386,12 +392,21 @@ void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_
     const auto moves = static_cast<float>(path.size());
     const double view_m = std::max(search.map().view_radius_m(), 1.0);
     const double cones_off = static_cast<double>(search.map().size()) / static_cast<double>(path.size() + 1);
-    features_[contender] = values_of<kWholeLaneSchema>(WholeLaneSeen{
-        all, scores_.front() - scores_[contender], probability_[contender],
-        scores_[contender] / static_cast<double>(moves), worst_stop(search, lane),
-        steps_[path.front()].inputs[place_of(kConeSchema, "move_score")], both_m, expected_m_, moves, view_m,
-        static_cast<float>(std::log(cones_off)), search.node(lane.node).state.color_agreement(),
-        search.map().color_share(), search.map().color_consistency()});
+    features_[contender] = values_of<kWholeLaneSchema>(
+        WholeLaneSeen{.all = all,
+                      .behind = scores_.front() - scores_[contender],
+                      .probability = probability_[contender],
+                      .mean_score = scores_[contender] / static_cast<double>(moves),
+                      .worst_stop = worst_stop(search, lane),
+                      .start_score = steps_[path.front()].inputs[place_of(kConeSchema, "move_score")],
+                      .both_m = both_m,
+                      .expected_m = expected_m_,
+                      .moves = moves,
+                      .view_m = view_m,
+                      .log_cones_off = static_cast<float>(std::log(cones_off)),
+                      .color_agreement = search.node(lane.node).state.color_agreement(),
+                      .color_share = search.map().color_share(),
+                      .color_consistency = search.map().color_consistency()});
 }
 
 double FrontJudge::confidence(std::size_t contender) const {

@@ -18,7 +18,7 @@ namespace conelane {
 /// part. Keeps memory from call to call.
 class FrontJudge {
   public:
-    /// Lanes looked at.
+    /// Number of lanes that are compared.
     static constexpr std::size_t kContenders = 20;
 
     struct Contender {
@@ -42,7 +42,7 @@ class FrontJudge {
     ///
     /// Precondition: at least one contender and at most kContenders, the one with the highest score first,
     /// each with at least two cones a side.
-    void look(FrontSearch& search, std::span<const Contender> contenders);
+    void compare(FrontSearch& search, std::span<const Contender> contenders);
 
     /// Indices of the contenders, the best first; of equal ones the earlier one.
     [[nodiscard]] std::span<const std::size_t> order() const { return order_; }
@@ -95,7 +95,7 @@ class FrontJudge {
         FrontNetwork right;
         double least_trust;
     };
-    /// Those for the scene that was looked at.
+    /// The networks for the scene of the last call of `compare`.
     [[nodiscard]] const Networks& networks() const { return sees_colors_ ? *colored_ : plain_; }
 
     Networks plain_;

@@ -124,7 +124,7 @@ Vertex FrontMap::nearest_colored(Vertex cone) const {
     const Point& at = positions_[cone];
     double nearest_m2 = kShortSegment_m * kShortSegment_m;
     Vertex nearest = kNoCone;
-    const auto look = [&](Vertex other) {
+    const auto goes_on_past = [&](Vertex other) {
         const double ahead_m = positions_[other].x() - at.x();
         if (ahead_m * ahead_m >= nearest_m2) return false;
         const double off_m2 = (positions_[other] - at).squaredNorm();
@@ -134,8 +134,8 @@ Vertex FrontMap::nearest_colored(Vertex cone) const {
         }
         return true;
     };
-    for (Vertex other = cone; other > 0 && look(other - 1);) --other;
-    for (Vertex other = cone + 1; other < positions_.size() && look(other);) ++other;
+    for (Vertex other = cone; other > 0 && goes_on_past(other - 1);) --other;
+    for (Vertex other = cone + 1; other < positions_.size() && goes_on_past(other);) ++other;
     return nearest;
 }
 
@@ -176,7 +176,8 @@ void FrontMap::find_edges(Vertex from) {
             const double squared_m2 = way.squaredNorm();
             if (squared_m2 <= beyond_m * beyond_m || squared_m2 > up_to_m * up_to_m) continue;
             const double length_m = std::sqrt(squared_m2);
-            found_.push_back({to, static_cast<float>(length_m), 0.0F, 0.0F, way / length_m});
+            found_.push_back(
+                {.to = to, .length_m = static_cast<float>(length_m), .direction = way / length_m});
         }
     };
     found_.clear();
@@ -224,15 +225,15 @@ void FrontMap::find_edges(Vertex from) {
 const EdgeNeighbourhood& FrontMap::neighbourhood(Vertex from, std::size_t edge) {
     const std::size_t place = places_[from].first + edge;
     if (!neighbourhoods_[place].known) {
-        EdgeNeighbourhood about;
-        look_about(from, edge, about);
-        about.known = true;
-        neighbourhoods_[place] = about;  // computing the continuation may have reallocated the vector
+        EdgeNeighbourhood found = find_neighbourhood(from, edge);
+        found.known = true;
+        neighbourhoods_[place] = found;  // computing the continuation may have reallocated the vector
     }
     return neighbourhoods_[place];
 }
 
-void FrontMap::look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& about) {
+EdgeNeighbourhood FrontMap::find_neighbourhood(Vertex from, std::size_t edge) {
+    EdgeNeighbourhood found;
     const std::span<const FrontEdge> near = edges(from);
     const FrontEdge& way = near[edge];
     const double length_m = way.length_m;
@@ -241,32 +242,33 @@ void FrontMap::look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& abou
         if (other.to == way.to) continue;
         const double along_m = other.length_m * way.direction.dot(other.direction);
         const double left_m = other.length_m * cross(way.direction, other.direction);
-        if (along_m * (along_m - length_m) + left_m * left_m < 0.0) about.within_disc += 1.0F;
+        if (along_m * (along_m - length_m) + left_m * left_m < 0.0) found.within_disc += 1.0F;
         const double share = along_m / length_m;
         const double off_m = std::abs(left_m);
-        if (off_m <= kBlocking_m && share >= kMiddleFrom && share <= kMiddleTo) about.blocked = true;
+        if (off_m <= kBlocking_m && share >= kMiddleFrom && share <= kMiddleTo) found.blocked = true;
         if (off_m >= kBeside_m || share < kBesideFrom || share > kBesideTo) continue;
         const auto nearness = static_cast<float>(1.0 - off_m / kBeside_m);
-        float& nearest = about.nearest_beside[left_m > 0.0 ? kLeft : kRight];
+        float& nearest = found.nearest_beside[left_m > 0.0 ? kLeft : kRight];
         nearest = std::max(nearest, nearness);
-        about.beside += nearness;
+        found.beside += nearness;
         if (!has_colors_) continue;
         for (const Side side : {kLeft, kRight}) {
             const float of_color = nearness * colors_[other.to].of_side[side];
-            about.nearest_of_color[side] = std::max(about.nearest_of_color[side], of_color);
+            found.nearest_of_color[side] = std::max(found.nearest_of_color[side], of_color);
         }
     }
-    about.continuation = kNoContinuation;
+    found.continuation = kNoContinuation;
     for (const FrontEdge& next : edges(way.to)) {
         if (next.to == from) continue;
         if (next.length_m < kBeside_m)
-            about.crowding = std::max(about.crowding, static_cast<float>(1.0 - next.length_m / kBeside_m));
+            found.crowding = std::max(found.crowding, static_cast<float>(1.0 - next.length_m / kBeside_m));
         if (next.length_m > kShortSegment_m + 1.0) break;
         const double bend_rad = std::abs(
             wrapped_angle(static_cast<double>(next.bearing_rad) - static_cast<double>(way.bearing_rad)));
         const auto badness = static_cast<float>(bend_rad + std::abs(next.log_length - way.log_length));
-        about.continuation = std::min(about.continuation, badness);
+        found.continuation = std::min(found.continuation, badness);
     }
+    return found;
 }
 
 std::size_t FrontMap::memory_bytes() const {

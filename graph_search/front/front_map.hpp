@@ -59,9 +59,9 @@ inline constexpr double kShortSegment_m = 5.8;
 struct FrontEdge {
     Vertex to;
     float length_m;
-    float log_length;   ///< natural logarithm of the length in metres
-    float bearing_rad;  ///< angle from the heading of the car to `direction`
-    Point direction;    ///< unit vector
+    float log_length = 0.0F;   ///< natural logarithm of the length in metres
+    float bearing_rad = 0.0F;  ///< angle from the heading of the car to `direction`
+    Point direction;           ///< unit vector
 };
 
 /// What is around the way from a cone to another one. Left and right as seen along it.
@@ -176,7 +176,7 @@ class FrontMap {
     void find_edges(Vertex from);
     void find_view_radius();
     [[nodiscard]] bool is_alone(Vertex cone) const;
-    void look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& about);
+    [[nodiscard]] EdgeNeighbourhood find_neighbourhood(Vertex from, std::size_t edge);
     void take_colors(const Scene& scene);
     void take_spread(const Scene& scene);
     [[nodiscard]] Vertex nearest_colored(Vertex cone) const;

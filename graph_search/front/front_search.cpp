@@ -153,13 +153,22 @@ void FrontSearch::expand(std::size_t number) {
             from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
         const double score = from.score + static_cast<double>(scores[i]) + bonus(side, move.to);
         push(std::max(level + 1, static_cast<std::size_t>(progress_m / options_.level_m)),
-             {score, number, move, side, from.start, margins.of(scores[i])});
+             {.score = score,
+              .parent = number,
+              .move = move,
+              .side = side,
+              .start = from.start,
+              .margin = margins.of(scores[i])});
     }
     if (!moves_.stops) return;
     const double score = from.score + static_cast<double>(scores.back());
     if (!from.state.ends[opposite(side)].stopped) {
-        push(level_after(level, from.state),
-             {score, number, {}, side, from.start, margins.of(scores.back())});
+        push(level_after(level, from.state), {.score = score,
+                                              .parent = number,
+                                              .move = {},
+                                              .side = side,
+                                              .start = from.start,
+                                              .margin = margins.of(scores.back())});
     } else if (from.state.is_lane()) {
         finished_.push_back({number, side, score});
         best_finished_ = std::max(best_finished_, score);
@@ -261,6 +270,28 @@ void FrontSearch::cones(std::size_t number, std::array<std::vector<Vertex>, 2>& 
     for (const Side side : {kLeft, kRight}) {
         cones[side].push_back(nodes_[number].state.ends[side].cones[0]);
         std::ranges::reverse(cones[side]);
+    }
+}
+
+FrontEvidence::FrontEvidence(double bonus) : bonus_(bonus) {
+    if (!(bonus >= 0.0 && std::isfinite(bonus))) throw InvalidInput("repeat_bonus", "must be at least 0");
+}
+
+void FrontEvidence::remember(const Lane& lane) {
+    remembered_.clear();
+    for (const ConeId id : lane.left) remembered_.emplace_back(id, bit_of(kLeft));
+    for (const ConeId id : lane.right) remembered_.emplace_back(id, bit_of(kRight));
+    std::ranges::sort(remembered_);
+}
+
+void FrontEvidence::find_again(const Scene& scene, const FrontMap& map) {
+    sides_.assign(map.size(), 0);
+    if (remembered_.empty()) return;
+    for (Vertex cone = 0; cone < map.size(); ++cone) {
+        const ConeId id = scene.cones[map.scene_index(cone)].id;
+        const auto known =
+            std::ranges::lower_bound(remembered_, id, {}, &std::pair<ConeId, std::uint8_t>::first);
+        if (known != remembered_.end() && known->first == id) sides_[cone] = known->second;
     }
 }
 

@@ -1,42 +1,47 @@
 #include "graph_search/front/front_weights.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "graph_search/front/front_features.hpp"
 #include "graph_search/front/front_judge_features.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace conelane {
 
 namespace {
 
+std::size_t inputs_of(const FrontNetworkPlace& place) {
+    std::size_t inputs = 0;
+    for (const FrontFeatureList& list : input_lists(place)) inputs += list.features.size();
+    return inputs;
+}
+
 void validate_set(const FrontWeightSet& weights, const std::string& prefix) {
-    const auto require = [&](const FrontNetworkWeights& network, std::size_t inputs, const char* of) {
-        const std::string name = prefix + of;
-        if (network.inputs != inputs)
-            throw InvalidInput(name + ".inputs", "must be " + std::to_string(inputs));
-        validate(network, name);
-    };
-    require(weights.extend, kExtendInputs, "extend");
-    require(weights.stop, kStopInputs, "stop");
-    require(weights.start, kStartFeatures, "start");
-    require(weights.rank, kWholeLaneFeatures, "rank");
-    require(weights.usable, kWholeLaneFeatures, "usable");
-    require(weights.right, kRightInputs, "right");
+    for (const FrontNetworkPlace& place : kFrontNetworks) {
+        const std::string name = prefix + std::string(place.key);
+        if ((weights.*place.network).inputs != inputs_of(place))
+            throw InvalidInput(name + ".inputs", "must be " + std::to_string(inputs_of(place)));
+        validate(weights.*place.network, name);
+    }
     if (!(weights.least_trust >= 0.0 && weights.least_trust <= 1.0))
         throw InvalidInput(prefix + "least_trust", "must be in [0, 1]");
 }
 
 }  // namespace
 
+std::vector<FrontFeatureList> input_lists(const FrontNetworkPlace& place) {
+    const auto all = front_feature_lists();
+    std::vector<FrontFeatureList> lists;
+    for (const std::string_view key : place.inputs) {
+        if (!key.empty()) lists.push_back(*std::ranges::find(all, key, &FrontFeatureList::key));
+    }
+    return lists;
+}
+
 FrontWeights FrontWeights::zero() {
     FrontWeights weights;
-    weights.extend = FrontNetworkWeights::zero(kExtendInputs);
-    weights.stop = FrontNetworkWeights::zero(kStopInputs);
-    weights.start = FrontNetworkWeights::zero(kStartFeatures);
-    weights.rank = FrontNetworkWeights::zero(kWholeLaneFeatures);
-    weights.usable = FrontNetworkWeights::zero(kWholeLaneFeatures);
-    weights.right = FrontNetworkWeights::zero(kRightInputs);
+    for (const FrontNetworkPlace& place : kFrontNetworks)
+        weights.*place.network = FrontNetworkWeights::zero(inputs_of(place));
     return weights;
 }
 

@@ -2,7 +2,10 @@
 
 #include "graph_search/front/front_network.hpp"
 
+#include <array>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace conelane {
 
@@ -22,6 +25,40 @@ struct FrontWeightSet {
 
     bool operator==(const FrontWeightSet&) const = default;
 };
+
+/// A network of a set: its key in files, and the feature lists that are its inputs (see
+/// front_feature_lists).
+struct FrontNetworkPlace {
+    std::string_view key;
+    FrontNetworkWeights FrontWeightSet::*network;
+    std::array<std::string_view, 3> inputs;  ///< empty behind the last one
+};
+/// In the order of files.
+inline constexpr std::array<FrontNetworkPlace, 6> kFrontNetworks{{
+    {"extend", &FrontWeightSet::extend, {"state", "extend"}},
+    {"stop", &FrontWeightSet::stop, {"state", "stop"}},
+    {"start", &FrontWeightSet::start, {"start"}},
+    {"rank", &FrontWeightSet::rank, {"lane"}},
+    {"usable", &FrontWeightSet::usable, {"lane"}},
+    {"right", &FrontWeightSet::right, {"cone", "state", "extend"}},
+}};
+
+struct FrontFeatureList;
+[[nodiscard]] std::vector<FrontFeatureList> input_lists(const FrontNetworkPlace& place);
+
+/// Calls use(place, key, numbers, each) for each list of numbers of a set, in the order of files. `each`: how
+/// many of them belong to one input; 0 if they belong to none.
+template <typename Set, typename Use>
+void for_each_weights_list(Set& set, const Use& use) {
+    for (const FrontNetworkPlace& place : kFrontNetworks) {
+        auto& network = set.*place.network;
+        use(place, "hidden", std::span(network.hidden), kFrontUnits);
+        use(place, "hidden_bias", std::span(network.hidden_bias), std::size_t{0});
+        use(place, "output", std::span(network.output), std::size_t{0});
+        use(place, "linear", std::span(network.linear), std::size_t{1});
+        use(place, "output_bias", std::span(&network.output_bias, 1), std::size_t{0});
+    }
+}
 
 /// All that `front` has learned: a set for scenes without colors, and one for the others.
 struct FrontWeights : FrontWeightSet {

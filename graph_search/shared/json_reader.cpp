@@ -12,9 +12,6 @@
 namespace conelane {
 namespace {
 
-/// Deepest nesting of values, which is also the depth of the recursion.
-constexpr int kMaxDepth = 64;
-
 /// The double nearest to a number of JSON; infinite if it is out of range.
 double double_of(std::string_view number) {
     double value = 0.0;
@@ -86,13 +83,12 @@ double JsonReader::number() {
     return double_of(text_.substr(begin, at_ - begin));
 }
 
-void JsonReader::skip(int depth) {
-    if (depth > kMaxDepth) fail("values are nested too deep");
+void JsonReader::skip() {
     const char c = next();
     if (c == '{') {
-        object([&](const std::string&) { skip(depth + 1); });
+        object([&](const std::string&) { skip(); });
     } else if (c == '[') {
-        array([&] { skip(depth + 1); });
+        array([&] { skip(); });
     } else if (c == '"') {
         (void)string();
     } else if (is_number()) {

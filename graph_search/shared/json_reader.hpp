@@ -46,7 +46,9 @@ class JsonReader {
     double number();
 
     /// Passes over any value.
-    void skip(int depth = 0);
+    void skip();
+    /// Number of characters read so far.
+    [[nodiscard]] std::size_t position() const { return at_; }
 
   private:
     void pass_blanks();
@@ -56,17 +58,18 @@ class JsonReader {
 
     template <typename Read>
     void list(char open, char close, const Read& read) {
+        constexpr int kMaxDepth = 64;  // of the recursion too
         expect(open);
-        if (next() == close) {
-            ++at_;
-            return;
-        }
-        while (true) {
+        if (++depth_ > kMaxDepth) fail("values are nested too deep");
+        bool is_first = true;
+        while (next() != close || !is_first) {
             read();
+            is_first = false;
             if (next() == close) break;
             expect(',');
         }
         ++at_;
+        --depth_;
     }
 
     void escape();
@@ -76,6 +79,7 @@ class JsonReader {
     std::string_view text_;
     std::string_view key_;
     std::size_t at_ = 0;
+    int depth_ = 0;
 };
 
 }  // namespace conelane

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-/// The constraint families of the RLD model, one file each; `formulation_parts.cpp` lists those of a
+/// The constraint families of the RLD model; `formulation_parts.cpp` lists those of a
 /// formulation. Families with many or long rows check RowWriter::stop between them.
 namespace conelane::constraints {
 
@@ -15,9 +15,8 @@ namespace conelane::constraints {
 /// the sum of its e columns if the formulation has those.
 void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient);
 
-// degree.cpp
-void inlier_degree(const FamilyContext& context);  ///< (1)(2): g_i <= A_i <= 2 g_i
 // endpoints.cpp
+void inlier_degree(const FamilyContext& context);   ///< (1)(2): g_i <= A_i <= 2 g_i
 void four_endpoints(const FamilyContext& context);  ///< (3)
 void two_paths(const FamilyContext& context);       ///< (4), implied by (3)
 void near_endpoints(const FamilyContext& context);  ///< (11)
@@ -28,24 +27,22 @@ void far_partners(const FamilyContext& context);  ///< (12)-(17) without u
 // width.cpp
 void width_pairs(const FamilyContext& context);    ///< (6)-(8)
 void width_cliques(const FamilyContext& context);  ///< (6)-(8) merged into cliques
-// heading.cpp
-void heading(const FamilyContext& context);  ///< (9)
+// edges.cpp
+void heading(const FamilyContext& context);      ///< (9)
+void edge_limits(const FamilyContext& context);  ///< (27)
+void turn_limits(const FamilyContext& context);  ///< (28)
 // angles.cpp
 void turn_products(const FamilyContext& context);  ///< (22)(23)
 void turn_flow(const FamilyContext& context);      ///< (1)(2)(22)(23)(28), tightened
-// high_cost.cpp
-void edge_limits(const FamilyContext& context);  ///< (27)
-void turn_limits(const FamilyContext& context);  ///< (28)
 
 /// Rows of a family that is too large to write in full: only those that an integral point violates. Pure
 /// functions of the problem and the chosen edges (by problem edge).
 
-// no_cycles.cpp
+// separated_rows.cpp
 /// (5): a row for every cycle that the chosen edges form. Precondition: no cone has more than two of them.
 [[nodiscard]] std::vector<ProgramRow> separate_cycles(const LaneGraphProblem& problem,
                                                       const ColumnMap& columns,
                                                       const std::vector<bool>& chosen);
-// pairing.cpp
 /// Pairing near_far: a row for every chosen path between two near endpoints.
 [[nodiscard]] std::vector<ProgramRow> separate_near_near(const LaneGraphProblem& problem,
                                                          const ColumnMap& columns,

@@ -1,7 +1,6 @@
 // Changes of cones and car, undone.
-import { coneName, METHODS } from "./draw.mjs";
-import { FALSE_IDS, newId } from "./world.mjs";
-import { $, say, state } from "./state.mjs";
+import { coneName, FALSE_IDS, newId } from "./world.mjs";
+import { $, METHODS, say, state } from "./state.mjs";
 import { changed } from "./detect_loop.mjs";
 import { explainSoon } from "./explanation.mjs";
 import { saveSoon } from "./saved_link.mjs";
@@ -62,7 +61,6 @@ export function deleteCone(id) {
   changed();
   saveSoon();
 }
-
 
 export function select(id) {
   Object.assign(state, { selected: id, hovered: null, edge: null });

@@ -1,12 +1,7 @@
 // Looks, asks the methods and draws, once a frame at most.
-import { draw, METHODS } from "./draw.mjs";
+import { draw } from "./draw.mjs";
 import { look, sceneOf } from "./world.mjs";
-import { ctx, showError, state, view } from "./state.mjs";
-import { clients } from "./clients.mjs";
-import { tellMethod } from "./method_cards.mjs";
-import { tellCounts } from "./sight_controls.mjs";
-import { explainSoon } from "./explanation.mjs";
-import { measureFrame } from "./frame_rate.mjs";
+import { clients, METHODS, showError, state, tell } from "./state.mjs";
 
 export let version = 0;               // of the scene
 export const doneVersion = {};        // by method: of the scene that it answered last
@@ -20,9 +15,8 @@ export function changed(what = "scene") {
   requestAnimationFrame(frame);
 }
 
-function frame(now) {
+function frame() {
   isFrameAsked = false;
-  measureFrame(now);
   if (!state.world) return;
   if (isLookDue) {
     isLookDue = false;
@@ -35,9 +29,9 @@ function frame(now) {
       version += 1;
       detectLoop();
     }
-    tellCounts();
+    tell("looked");
   }
-  draw(ctx, view, state, state.colors);
+  draw();
   if (state.dragging) changed("picture");
 }
 
@@ -62,13 +56,13 @@ export async function detectLoop() {
       showError(error.message);
     }
     doneVersion[name] = asked;
-    tellMethod(name);
+    tell("answered", name);
     changed("picture");
   }
   isDetecting = false;
   document.body.dataset.version = String(version);
   settled.splice(0).forEach((one) => one());
-  explainSoon();
+  tell("settled");
 }
 
 const settled = [];

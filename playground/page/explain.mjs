@@ -31,10 +31,7 @@ function judge(conelane, scene, solution, changes) {
 }
 
 /** What edges cost, and their turns with each other. */
-function prices(conelane, scene, edges) {
-  const { edges: priced, turns } = conelane.price(scene, edges);
-  return { priced, turns };
-}
+const prices = (conelane, scene, edges) => (({ edges: priced, turns }) => ({ priced, turns }))(conelane.price(scene, edges));
 
 /** The cone, judged: {id, role, edges, turns, best}. `role`: left, right or none. */
 export function explainCone(conelane, scene, solution, id) {

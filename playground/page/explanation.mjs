@@ -1,8 +1,6 @@
 // Why this lane? A cone or an edge of the exact solver, explained.
-import { coneName } from "./draw.mjs";
-import { sceneOf } from "./world.mjs";
-import { $, attempt, escape, state } from "./state.mjs";
-import { clients } from "./clients.mjs";
+import { coneName, sceneOf } from "./world.mjs";
+import { $, attempt, clients, escape, on, state } from "./state.mjs";
 import { version } from "./detect_loop.mjs";
 
 const EXPLAIN_LIMIT_MS = 2000;
@@ -12,6 +10,8 @@ export function explainSoon() {
   clearTimeout(explainTimer);
   explainTimer = setTimeout(() => attempt(explain), 70);
 }
+
+on("settled", explainSoon);
 
 async function explain() {
   if (state.dragging || state.run || !clients.second) return;

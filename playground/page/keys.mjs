@@ -1,12 +1,12 @@
 // Keys.
-import { coneName, METHODS } from "./draw.mjs";
-import { $, canvas, say, state, view } from "./state.mjs";
+import { coneName } from "./world.mjs";
+import { canvas, METHODS, say, state, view } from "./state.mjs";
 import { changed } from "./detect_loop.mjs";
-import { turn } from "./method_cards.mjs";
-import { togglePlay } from "./playback.mjs";
-import { addCone, deleteCone, ownCone, remember, select, undo } from "./changes.mjs";
 import { saveSoon } from "./saved_link.mjs";
 import { fitAll, fitView } from "./picture.mjs";
+import { addCone, deleteCone, ownCone, remember, select, undo } from "./changes.mjs";
+import { turn } from "./method_cards.mjs";
+import { togglePlay } from "./playback.mjs";
 
 function selectNext(step) {
   const { car } = state;

@@ -1,17 +1,25 @@
 // Begins: the module, the first course, the self-test.
 import { Client } from "./client.mjs";
-import { $, median, ms, onRestart, showError, state, view } from "./state.mjs";
-import { clients, makeWorker, moduleBytes } from "./clients.mjs";
+import { $, clients, ms, onRestart, showError, state, view } from "./state.mjs";
 import { changed, times, whenSettled } from "./detect_loop.mjs";
+import { save } from "./saved_link.mjs";
+import { darkness, setTheme } from "./picture.mjs";
+import { select } from "./changes.mjs";
 import { makeMethods, turn } from "./method_cards.mjs";
 import { LIMITS_MS, tellSliders } from "./sight_controls.mjs";
-import { chooseCourse, FIRST_COURSE, makeCourses, openFiles } from "./worlds.mjs";
-import { select } from "./changes.mjs";
-import { openLink, save } from "./saved_link.mjs";
-import { darkness, setTheme } from "./picture.mjs";
-import { measure } from "./frame_rate.mjs";
+import { chooseCourse, FIRST_COURSE, makeCourses, openFiles, openLink } from "./worlds.mjs";
+import {} from "./playback.mjs";
 import {} from "./pointer.mjs";
 import {} from "./keys.mjs";
+
+const workerUrl = URL.createObjectURL(new Blob([$("worker-text").textContent], { type: "text/javascript" }));
+const makeWorker = () => new Worker(workerUrl);
+
+async function moduleBytes() {
+  const packed = Uint8Array.from(atob($("module-bytes").textContent.trim()), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Response(stream).arrayBuffer();
+}
 
 async function runSelfTest() {
   const stored = JSON.parse($("stored-scenes").textContent);
@@ -57,9 +65,9 @@ async function begin() {
 
 /** For tests and the console. */
 globalThis.playground = {
-  state, view, measure, whenSettled, select, turn, openFiles, save,
+  state, view, whenSettled, select, turn, openFiles, save,
   ask: (task, given) => clients.first.ask(task, given),
-  place: (id) => { const cone = state.seen.find((one) => one.id === id); return cone && view.px(cone.x, cone.y); },
+  place: (id) => { const cone = state.seen.find((one) => one.id === id); return cone && view.at([cone.x, cone.y]); },
 };
 
 begin().catch((error) => {

@@ -1,6 +1,6 @@
 // A card for each method: on or off, and what it answers.
-import { METHODS } from "./draw.mjs";
-import { $, escape, median, ms, state } from "./state.mjs";
+import { drawKeys } from "./draw.mjs";
+import { $, escape, median, METHODS, ms, on, state } from "./state.mjs";
 import { changed, detectLoop, doneVersion, times } from "./detect_loop.mjs";
 import { explainSoon } from "./explanation.mjs";
 import { saveSoon } from "./saved_link.mjs";
@@ -10,16 +10,15 @@ export function makeMethods() {
     const box = document.createElement("div");
     box.className = "method";
     box.id = `method-${method.name}`;
-    const width = Math.min(method.width, 6);
     box.innerHTML = `<label><input type="checkbox" ${state.methods[method.name] ? "checked" : ""}>
-      <svg viewBox="0 0 48 14" aria-hidden="true"><line x1="3" y1="7" x2="45" y2="7" stroke="var(${method.color})" stroke-width="${width}"
-        stroke-dasharray="${method.dash.join(" ")}" stroke-opacity="${method.alpha}" stroke-linecap="${method.dash[0] > 3 ? "butt" : "round"}"/></svg>
+      <canvas data-key="${method.name}" aria-hidden="true"></canvas>
       <span>${method.name}</span><span class="about">${method.about}</span><span class="time"></span></label><dl></dl>`;
     box.title = `${method.name} on or off (${i + 1})`;
     box.querySelector("input").addEventListener("change", (event) => turn(method.name, event.target.checked));
     $("methods").append(box);
     tellMethod(method.name);
   }
+  drawKeys();
 }
 
 export function turn(name, isOn) {
@@ -54,7 +53,7 @@ export function tellMethod(name) {
   if (answer.stopped_by) add("limit", `stopped by ${answer.stopped_by}`);
   if (answer.message) add("says", escape(answer.message));
   if (answer.confidence !== undefined)
-    add("confidence", `<span class="bar" style="color: var(${METHODS.find((one) => one.name === name).color})"><i style="width: ${answer.confidence * 100}%"></i></span>${(answer.confidence * 100).toFixed(1)} %`);
+    add("confidence", `<span class="bar" style="color: var(--${METHODS.find((one) => one.name === name).color})"><i style="width: ${answer.confidence * 100}%"></i></span>${(answer.confidence * 100).toFixed(1)} %`);
   if (answer.trusted_m !== undefined && answer.status === "found") add("trusted", `${answer.trusted_m.toFixed(1)} m`);
   if (answer.objective !== undefined) {
     add("objective", answer.objective.toFixed(4));
@@ -64,3 +63,4 @@ export function tellMethod(name) {
   if (times[name]?.length > 1) add(`median of ${times[name].length}`, ms(median(times[name])));
   list.innerHTML = rows.join("");
 }
+on("answered", tellMethod);

@@ -1,15 +1,14 @@
 // Drives a lap, or plays a file.
 import { drive, FRAME_S, frameOf, startRun } from "./drive.mjs";
-import { $, attempt, median, ms, state, view } from "./state.mjs";
-import { clients } from "./clients.mjs";
+import { $, attempt, clients, median, ms, on, state } from "./state.mjs";
 import { changed, whenSettled } from "./detect_loop.mjs";
+import { fitView, follow } from "./picture.mjs";
 import { showScene } from "./worlds.mjs";
-import { fitView } from "./picture.mjs";
 
 const speed = () => Number($("speed").value);
 const isFile = () => state.file && state.file.scenes.length > 1;
 
-export function tellPlaybar() {
+function tellPlaybar() {
   $("frame").hidden = !isFile();
   if (isFile()) {
     $("frame").max = state.file.scenes.length - 1;
@@ -19,6 +18,8 @@ export function tellPlaybar() {
   document.body.dataset.playing = String(state.playing);
   tellRun();
 }
+
+on("world", tellPlaybar);
 
 function tellRun() {
   const { run } = state;
@@ -37,7 +38,7 @@ function tellRun() {
   $("run-state").textContent = text;
 }
 
-export function stopRun() {
+function stopRun() {
   state.playing = false;
   state.run = null;
 }
@@ -94,16 +95,6 @@ async function driveLap() {
   }
   if (state.run === run && run.state !== "driving") state.playing = false;
   tellPlaybar();
-}
-
-/** Keeps the car in the picture. */
-export function follow(car, isStart = false) {
-  if (isStart) state.following = true;
-  if (!state.following || state.dragging) return;
-  const ahead = 0.35 * Math.min(view.width, view.height) / view.scale;
-  const x = car.x + ahead * Math.cos(car.yaw), y = car.y + ahead * Math.sin(car.yaw);
-  view.x += (x - view.x) * 0.08;
-  view.y += (y - view.y) * 0.08;
 }
 
 export function togglePlay() {

@@ -2,10 +2,9 @@
 import { coneSize, handleOf } from "./draw.mjs";
 import { canvas, state, view } from "./state.mjs";
 import { changed } from "./detect_loop.mjs";
-import { addCone, deleteCone, ownCone, remember, select } from "./changes.mjs";
 import { explainSoon } from "./explanation.mjs";
 import { saveSoon } from "./saved_link.mjs";
-import { beginMeasure, endMeasure } from "./frame_rate.mjs";
+import { addCone, deleteCone, ownCone, remember, select } from "./changes.mjs";
 
 const pointers = new Map();
 let pinch = null;
@@ -21,7 +20,7 @@ function coneAt(px, py, reach) {
   const known = new Set(state.seen.map((one) => one.id));
   let best = null, distance = reach;
   for (const cone of [...state.world.cones.filter((one) => !known.has(one.id)), ...state.seen]) {
-    const [x, y] = view.px(cone.x, cone.y), far = Math.hypot(x - px, y - py);
+    const [x, y] = view.at([cone.x, cone.y]), far = Math.hypot(x - px, y - py);
     if (far <= distance) [best, distance] = [cone.id, far];
   }
   return best;
@@ -31,7 +30,7 @@ function coneAt(px, py, reach) {
 function edgeAt(px, py, reach) {
   const answer = state.found["rld-pair"]?.answer;
   if (!state.methods["rld-pair"] || answer?.status !== "found") return null;
-  const place = new Map(state.seen.map((cone) => [cone.id, view.px(cone.x, cone.y)]));
+  const place = new Map(state.seen.map((cone) => [cone.id, view.at([cone.x, cone.y])]));
   let best = null, distance = reach;
   for (const side of [answer.left, answer.right]) {
     for (let i = 0; i + 1 < side.length; i++) {
@@ -58,14 +57,13 @@ canvas.addEventListener("pointerdown", (event) => {
     return;
   }
   if (pointers.size > 2) return;
-  const reach = event.pointerType === "touch" ? 24 : 12 + coneSize(view) / 2;
+  const reach = event.pointerType === "touch" ? 24 : 12 + coneSize() / 2;
   const id = coneAt(px, py, reach);
   const near = ([x, y], far) => Math.hypot(x - px, y - py) <= far;
   state.dragging = { kind: "pan", from: [px, py], last: [px, py], id, isMoved: false };
-  if (!state.run && near(handleOf(view, state.car), event.pointerType === "touch" ? 24 : 12)) state.dragging.kind = "turn";
+  if (!state.run && near(handleOf(state.car), event.pointerType === "touch" ? 24 : 12)) state.dragging.kind = "turn";
   else if (id !== null) state.dragging.kind = "cone";
-  else if (!state.run && near(view.px(state.car.x, state.car.y), Math.max(1.3 * view.scale, 18))) state.dragging.kind = "car";
-  beginMeasure();
+  else if (!state.run && near(view.at([state.car.x, state.car.y]), Math.max(1.3 * view.scale, 18))) state.dragging.kind = "car";
   changed("picture");
 });
 
@@ -124,7 +122,6 @@ function release(event) {
   const drag = state.dragging;
   state.dragging = null;
   if (!drag) return;
-  endMeasure();
   if (drag.isMoved) {
     if (drag.kind !== "pan") saveSoon();
     changed(drag.kind === "pan" ? "picture" : "scene");
@@ -168,7 +165,7 @@ canvas.addEventListener("wheel", (event) => {
 }, { passive: false });
 
 function hover(px, py) {
-  const id = coneAt(px, py, 12 + coneSize(view) / 2);
+  const id = coneAt(px, py, 12 + coneSize() / 2);
   let edge = null;
   if (id !== null && state.selected !== null && id !== state.selected) edge = [state.selected, id];
   else if (id === null) edge = edgeAt(px, py, 8);

@@ -1,5 +1,5 @@
 // What the car sees: sliders and counts.
-import { $, canvas, ms, say, state } from "./state.mjs";
+import { $, canvas, on, state } from "./state.mjs";
 import { changed } from "./detect_loop.mjs";
 import { saveSoon } from "./saved_link.mjs";
 
@@ -12,27 +12,19 @@ const SLIDERS = {
 };
 const sayOf = (id) => document.querySelector(`output[for="${id}"]`);
 
-for (const [id, { key }] of Object.entries(SLIDERS)) {
-  $(id).addEventListener("input", () => {
-    state.sight.exact = false;
-    state.sight[key] = Number($(id).value);
+/** What a control does, and what follows from it. */
+function control(id, act, isSight = true) {
+  $(id).addEventListener(id === "redraw" ? "click" : "input", () => {
+    act(Number($(id).value));
+    if (isSight) state.sight.exact = false;
     tellSliders();
     changed();
-    saveSoon();
+    if (isSight) saveSoon();
   });
 }
-$("limit").addEventListener("input", () => {
-  state.limit_ms = LIMITS_MS[$("limit").value];
-  tellSliders();
-  changed();
-});
-$("redraw").addEventListener("click", () => {
-  state.sight.seed += 1;
-  state.sight.exact = false;
-  tellSliders();
-  changed();
-  saveSoon();
-});
+for (const [id, { key }] of Object.entries(SLIDERS)) control(id, (value) => { state.sight[key] = value; });
+control("redraw", () => { state.sight.seed += 1; });
+control("limit", (value) => { state.limit_ms = LIMITS_MS[value]; }, false);
 $("show-false").addEventListener("change", (event) => {
   state.marks_false = event.target.checked;
   changed("picture");
@@ -46,9 +38,10 @@ export function tellSliders() {
   sayOf("limit").textContent = `${state.limit_ms} ms`;
 }
 
-export function tellCounts() {
+function tellCounts() {
   const wrong = state.seen.filter((cone) => cone.is_false).length;
   const text = `${state.seen.length} cones seen` + (wrong ? `, ${wrong} of them false` : "") + (state.missed.length ? `; ${state.missed.length} missed` : "");
   $("counts").textContent = text;
   canvas.setAttribute("aria-label", `Course ${state.world.label} seen from above: ${text}`);
 }
+on("looked", tellCounts);

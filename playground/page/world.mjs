@@ -2,6 +2,8 @@
 
 /** Ids of false positives are from here on; those of cones are below. */
 export const FALSE_IDS = 1_000_000_000;
+/** Ids of false cones are long numbers, which say nothing. */
+export const coneName = (id) => (id >= FALSE_IDS ? `F${(id - FALSE_IDS).toString(36).toUpperCase()}` : String(id));
 /** False positives are drawn one in each square of this side. */
 const CELL_M = 1.5;
 

@@ -1,21 +1,20 @@
 // Courses, and files of scenes and lanes.
 import { readBytes } from "./files.mjs";
+import { readLink } from "./link.mjs";
 import { worldOfCones, worldOfCourse } from "./world.mjs";
-import { $, attempt, stage, state } from "./state.mjs";
-import { clients } from "./clients.mjs";
+import { $, attempt, clients, METHODS, stage, state, tell } from "./state.mjs";
 import { changed, times } from "./detect_loop.mjs";
-import { tellSliders } from "./sight_controls.mjs";
-import { follow, stopRun, tellPlaybar } from "./playback.mjs";
+import { ownHash, saveSoon } from "./saved_link.mjs";
+import { fitView, follow } from "./picture.mjs";
 import { past, snapshot } from "./changes.mjs";
-import { saveSoon } from "./saved_link.mjs";
-import { fitView } from "./picture.mjs";
+import { turn } from "./method_cards.mjs";
+import { tellSliders } from "./sight_controls.mjs";
 
 const COURSE_NAMES = { straight: "Straight", circle: "Circle", curvy: "Curvy", legs: "Parallel legs", tight_hairpins: "Tight hairpins", gates: "Loop with gates", wide: "Wide loop" };
 export const FIRST_COURSE = "hairpins", FIRST_PLACE = 0.16;
 
 export function setWorld(world, { car, sight, keepView = false, keepLanes = false } = {}) {
-  stopRun();
-  Object.assign(state, { world, car: { ...(car ?? world.start) }, selected: null, hovered: null, edge: null, file_lanes: [] });
+  Object.assign(state, { playing: false, run: null, world, car: { ...(car ?? world.start) }, selected: null, hovered: null, edge: null, file_lanes: [] });
   if (!keepLanes) {
     state.found = {};
     for (const name of Object.keys(times)) times[name] = [];
@@ -24,7 +23,7 @@ export function setWorld(world, { car, sight, keepView = false, keepLanes = fals
   state.original = snapshot();
   past.length = 0;
   tellSliders();
-  tellPlaybar();
+  tell("world");
   if (!keepView) fitView();
   changed();
   saveSoon();
@@ -40,18 +39,22 @@ export async function chooseCourse(name, seed = 0) {
   const [x, y, yaw] = course.line[Math.floor(course.line.length * (course.closed ? FIRST_PLACE : 0.05))];
   world.start = { x, y, yaw };
   setWorld(world, { sight: { exact: false } });
-  $("course").value = name;
-  $("another").hidden = false;
+  nameCourse(name);
 }
 
-export async function restoreLine() {
+/** Which course is shown; a course of files and links has no name. */
+function nameCourse(name) {
+  $("course").value = name;
+  $("another").hidden = name === "";
+}
+
+async function restoreLine() {
   const [name, seed] = state.world.name.split("@");
   if (state.world.line || ![...$("course").options].some((one) => one.value === name)) return;
   const course = await clients.first.ask("course", { name, seed: Number(seed ?? 0) });
   state.world.line = course.line;
   Object.assign(state.world, { base: name, seed: Number(seed ?? 0) });
-  $("course").value = name;
-  $("another").hidden = false;
+  nameCourse(name);
 }
 
 export function makeCourses(names) {
@@ -61,6 +64,15 @@ export function makeCourses(names) {
   $("another").addEventListener("click", () => attempt(() => chooseCourse(state.world.base, state.world.seed + 1)));
 }
 
+export async function openLink(hash) {
+  const { world, car, sight, methods } = await readLink(hash.slice(1));
+  state.file = null;
+  for (const { name } of METHODS) if (state.methods[name] !== methods.includes(name)) turn(name, methods.includes(name));
+  nameCourse("");
+  setWorld(world, { car, sight });
+  await restoreLine();
+}
+addEventListener("hashchange", () => { if (location.hash !== ownHash && location.hash) attempt(() => openLink(location.hash)); });
 
 export async function openFiles(files) {
   const lanes = [];
@@ -70,12 +82,10 @@ export async function openFiles(files) {
     else if (read.kind === "course") {
       state.file = null;
       setWorld(worldOfCones(read.name, read.cones, read.start, read.closed), { sight: { exact: false, rate: 0, noise_m: 0, missed: 0 } });
-      $("course").value = "";
-      $("another").hidden = true;
+      nameCourse("");
     } else {
       state.file = { ...read, at: 0 };
-      $("course").value = "";
-      $("another").hidden = true;
+      nameCourse("");
       showScene(0, true);
     }
   }
@@ -100,7 +110,7 @@ export function showScene(at, isNew = false) {
   state.playing = isPlaying;
   state.file_lanes = file.lanes.filter((lane) => lane.scene === scene.id);
   if (!isNew) follow(state.car);
-  tellPlaybar();
+  tell("world");
 }
 
 $("file").addEventListener("change", (event) => {

@@ -1,8 +1,8 @@
 #include "program/commands/command_parts.hpp"
 
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
@@ -43,25 +43,6 @@ void write_page(const fs::path& directory) {
 }
 
 }  // namespace
-
-std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) {
-    std::vector<CourseFamily> families;
-    for (const std::string& text : texts) {
-        const std::size_t equals = text.find('=');
-        const std::string name = text.substr(0, equals);
-        constexpr std::string_view kLetters =
-            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-        if (equals == std::string::npos || name.empty() ||
-            name.find_first_not_of(kLetters) != std::string::npos) {
-            throw CLI::ValidationError(
-                "--family", "'" + text + "' is not NAME=SPEC with a name of letters, digits, _ and -");
-        }
-        auto family = std::ranges::find(families, name, &CourseFamily::name);
-        if (family == families.end()) family = families.insert(families.end(), {name, {}});
-        family->tracks.push_back(text.substr(equals + 1));
-    }
-    return families;
-}
 
 WeightsBytes read_front_weights_bytes(const fs::path& file) {
     return parsed_file(file, [](std::string text) {

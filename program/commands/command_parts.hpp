@@ -4,7 +4,6 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/comparison.hpp"
-#include "experiments/cross_validation/course_family.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -18,10 +17,6 @@ namespace conelane::experiments {
 
 /// Stands for standard input and standard output.
 inline constexpr const char* kStandardStream = "-";
-
-/// The families that a user lists as NAME=SPEC, in the order in which their names first occur; another SPEC
-/// with the same name is added to that family. Throws CLI::ValidationError naming a text of another form.
-[[nodiscard]] std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts);
 
 /// The weights that `conelane train front` wrote. They are checked at once: before the work. Throws
 /// InputError.

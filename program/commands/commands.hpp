@@ -25,9 +25,6 @@ void add_race_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_plot_command(CLI::App& program);
 void add_train_command(CLI::App& program);
-/// `front` and `rld` below it.
-void add_train_front_command(CLI::App& train_command);
-void add_train_rld_command(CLI::App& train_command);
 void add_tune_command(CLI::App& program);
 
 }  // namespace conelane::experiments

@@ -1,3 +1,4 @@
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"

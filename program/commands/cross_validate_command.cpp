@@ -2,6 +2,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/field_options.hpp"
 
 #include <memory>
 #include <string>
@@ -22,8 +23,27 @@ struct CrossValidateOptions {
     std::string directory;
 };
 
+OptionFields learning_fields(LearningOptions& learning) {
+    return {{"--variants",
+             "",
+             &learning.variants,
+             {0.0, 100.0},
+             "number of variants of each course that networks learn from too: stretched, every second one "
+             "reversed"},
+            {"--evaluations",
+             "",
+             &learning.evaluations,
+             {1.0, 100'000.0},
+             "number of evaluations for each set of tuned parameters"},
+            {"--front-steps", "", &learning.front_steps, kPositive,
+             "of the training of front, as a share of those of the shipped weights"},
+            {"--rld-steps", "", &learning.rld_steps, kPositive,
+             "of the training of rld-learned, as a share of those of the shipped costs"}};
+}
+
 void run(CrossValidateOptions& options) {
     CrossValidationOptions& run = options.run;
+    require_in_range(learning_fields(run.learning));
     run.families = parse_families(options.families);
     for (const std::string& text : split_detectors(options.detectors))
         run.comparison.methods.push_back(parse_method(text));
@@ -76,38 +96,14 @@ void add_cross_validate_command(CLI::App& program) {
         ->capture_default_str();
     command.add_option("--learn-every", options->learning_every_m, "travel between poses to learn from [m]")
         ->capture_default_str();
-    command
-        .add_option("--variants", options->run.learning.variants,
-                    "number of variants of each course that networks learn from too: stretched, every second "
-                    "one reversed")
-        ->check(whole_number(0, 100))
-        ->capture_default_str();
-    command
-        .add_option("--evaluations", options->run.learning.evaluations,
-                    "number of evaluations for each set of tuned parameters")
-        ->check(whole_number(1, 100'000))
-        ->capture_default_str();
-    command
-        .add_option("--front-steps", options->run.learning.front_steps,
-                    "of the training of front, as a share of those of the shipped weights")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    command
-        .add_option("--rld-steps", options->run.learning.rld_steps,
-                    "of the training of rld-learned, as a share of those of the shipped costs")
-        ->check(CLI::PositiveNumber)
-        ->capture_default_str();
-    command
-        .add_option("--folds", options->folds,
-                    "FOLDER/NAME/..., as another cross-validation leaves them in OUT/folds, are the learned "
-                    "files for the courses of --family NAME; nothing is learned")
-        ->excludes("--always")
-        ->excludes("--learn-condition")
-        ->excludes("--learn-every")
-        ->excludes("--variants")
-        ->excludes("--evaluations")
-        ->excludes("--front-steps")
-        ->excludes("--rld-steps");
+    add_field_options(command, learning_fields(options->run.learning));
+    CLI::Option& folds =
+        *command.add_option("--folds", options->folds,
+                            "FOLDER/NAME/..., as another cross-validation leaves them in OUT/folds, are the "
+                            "learned files for the courses of --family NAME; nothing is learned");
+    for (const char* of_learning : {"--always", "--learn-condition", "--learn-every", "--variants",
+                                    "--evaluations", "--front-steps", "--rld-steps"})
+        folds.excludes(of_learning);
     command
         .add_option("--colors-from", options->colors_from,
                     "FOLDER/NAME/..., learned without --color by another cross-validation: with --color, the "

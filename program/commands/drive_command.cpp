@@ -5,7 +5,6 @@
 #include "evaluation/formats/frame_file.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/plan_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"

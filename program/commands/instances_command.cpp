@@ -1,4 +1,5 @@
 #include "conelane/invalid_input.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"

@@ -1,6 +1,6 @@
-#include "evaluation/formats/left_out_scenes.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/scene_set.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
@@ -47,6 +47,7 @@ void make_scenes(const ScenesOptions& options) {
 
 void add_scenes_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("scenes", "scenes from tracks, with their ground truth");
+    command.footer(track_format_lines());
     auto options = std::make_shared<ScenesOptions>();
     add_tracks_option(command, options->tracks)->required();
     add_scene_options(command, options->scenes);

@@ -1,4 +1,6 @@
-#include "evaluation/formats/figure_file.hpp"
+#include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/json_node.hpp"
+#include "evaluation/formats/provenance.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/studies/study.hpp"
 #include "program/commands/command_parts.hpp"
@@ -6,7 +8,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,8 +23,14 @@ struct StudyOptions {
 void run(Study& study, const std::string& out) {
     StudyResult result = study.run();
     if (!out.empty()) {
-        FigureFile output(out);
-        for (nlohmann::ordered_json& row : result.rows) output.add(std::move(row));
+        AtomicFile output(out);
+        const Provenance origin = provenance();
+        for (nlohmann::ordered_json& row : result.rows) {
+            row["commit"] = origin.commit;
+            row["compiler"] = origin.compiler;
+            row["machine"] = origin.machine;
+            output.stream() << to_line(row) << '\n';
+        }
         output.commit();
     }
     fmt::print("{}", result.table);

@@ -4,8 +4,8 @@
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "evaluation/formats/scene_options_json.hpp"
 #include "evaluation/formats/scene_set.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
@@ -14,9 +14,11 @@
 #include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/failure_causes.hpp"
 #include "experiments/tuning/tuner.hpp"
-#include "experiments/tuning/weight_rounds.hpp"
+#include "experiments/tuning/weight_fit.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/field_options.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -67,12 +69,9 @@ ordered_json conditions(const TuneOptions& options, const RldParameters& start) 
 
 ordered_json to_json(const RldParameters& parameters) {
     ordered_json json = ordered_json::object();
-    for (const RldParameterField& field : rld_parameter_fields()) {
-        json[std::string(field.key)] = parameters.*field.value;
-    }
-    if (!has_shape_costs(parameters)) return json;
-    for (const RldParameterField& field : rld_extra_fields()) {
-        json[std::string(field.key)] = parameters.*field.value;
+    for (const auto& fields : {rld_parameter_fields(), rld_extra_fields()}) {
+        for (const RldParameterField& field : fields) json[std::string(field.key)] = parameters.*field.value;
+        if (!has_shape_costs(parameters)) break;
     }
     return json;
 }
@@ -117,10 +116,12 @@ FailureCounts count_failures(const std::vector<AnnotatedScene>& scenes, const Rl
         count_one(counts.causes[rate], to_string(found.cause));
         if (!found.wrong) continue;
         ordered_json& places = counts.places[rate];
-        if (found.wrong->near_end > 0) count_one(places, "near_end");
-        if (found.wrong->inside > 0) count_one(places, "inside");
-        if (found.wrong->far_end > 0) count_one(places, "far_end");
-        if (found.wrong->on_lost_boundary > 0) count_one(places, "lost_boundary");
+        for (const auto& [name, cones] :
+             {std::pair("near_end", found.wrong->near_end), std::pair("inside", found.wrong->inside),
+              std::pair("far_end", found.wrong->far_end),
+              std::pair("lost_boundary", found.wrong->on_lost_boundary)}) {
+            if (cones > 0) count_one(places, name);
+        }
         if (*found.wrong == WrongCones{}) count_one(places, "none");
     }
     return counts;
@@ -283,17 +284,16 @@ void add_tune_command(CLI::App& program) {
                                    "from --objective to --most-nodes and from --folds to --log belong",
                                    fmt::join(tunable_names(), " or ")));
     add_tracks_option(command, options->tracks)->required();
+    const auto objectives = objective_names();
     command
         .add_option_function<std::string>(
             "--objective",
-            [options](const std::string& name) {
-                for (const TuningObjective objective : {TuningObjective::accuracy, TuningObjective::iou,
-                                                        TuningObjective::success, TuningObjective::usable}) {
-                    if (to_string(objective) == name) options->evaluation.objective = objective;
-                }
+            [options, objectives](const std::string& name) {
+                options->evaluation.objective =
+                    static_cast<TuningObjective>(std::ranges::find(objectives, name) - objectives.begin());
             },
             "what to maximise, as a mean over scenes [accuracy]")
-        ->check(CLI::IsMember({"accuracy", "iou", "success", "usable"}));
+        ->check(CLI::IsMember(std::vector<std::string>(objectives.begin(), objectives.end())));
     add_nearest_option(command, options->evaluation.nearest, "cone-set size; all cones without it");
     command
         .add_option_function<std::size_t>(
@@ -303,27 +303,29 @@ void add_tune_command(CLI::App& program) {
         ->check(whole_number(1, 100'000));
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
-    command
-        .add_option("--most-nodes", options->evaluation.max_nodes,
-                    "largest number of nodes of a scene's search; a search that takes more counts as wrong")
-        ->check(whole_number(1, 1'000'000'000))
-        ->capture_default_str();
-    command
-        .add_option("--folds", options->tuner.folds,
-                    "number of groups of tracks; each group is held out once; 1 holds none out")
-        ->check(whole_number(1, 1000))
-        ->capture_default_str();
-    command
-        .add_option("--rounds", options->rounds,
-                    "rounds that fit the weights to the lane graphs found so far, before the search of each "
-                    "fit; not in the log")
-        ->check(whole_number(0, 1000))
-        ->capture_default_str();
-    command
-        .add_option("--evaluations", options->tuner.evaluations,
-                    "largest number of parameter sets that the search evaluates in each fit")
-        ->check(whole_number(0, 1'000'000))
-        ->capture_default_str();
+    add_field_options(
+        command, {{"--most-nodes",
+                   "",
+                   &options->evaluation.max_nodes,
+                   {1.0, 1e9},
+                   "largest number of nodes of a scene's search; a search that takes more counts as wrong"},
+                  {"--folds",
+                   "",
+                   &options->tuner.folds,
+                   {1.0, 1000.0},
+                   "number of groups of tracks; each group is held out once; 1 holds none out"},
+                  {"--rounds",
+                   "",
+                   &options->rounds,
+                   {0.0, 1000.0},
+                   "rounds that fit the weights to the lane graphs found so far, before the search of each "
+                   "fit; not in "
+                   "the log"},
+                  {"--evaluations",
+                   "",
+                   &options->tuner.evaluations,
+                   {0.0, 1e6},
+                   "largest number of parameter sets that the search evaluates in each fit"}});
     command.add_option(
         "--start", options->start,
         "parameters to start from: a name or a file, as for --params elsewhere; without it the defaults");

@@ -1,14 +1,15 @@
-#include "python/bindings/arrays.hpp"
-
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "evaluation/formats/cone_json.hpp"
+#include "python/bindings/bindings.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <type_traits>
 #include <unordered_map>
 
 namespace conelane::python {
@@ -145,15 +146,6 @@ std::string parameter_keys() {
     return keys + "pairing, use_confidence, forbid_crossing, learned_costs";
 }
 
-double number(py::handle object, const std::string& key) {
-    const double value = PyFloat_AsDouble(object.ptr());
-    if (value == -1.0 && PyErr_Occurred() != nullptr) {
-        PyErr_Clear();
-        throw InvalidInput(key, "is not a number");
-    }
-    return value;
-}
-
 void set_parameter(RldParameters& parameters, const std::string& key, py::handle value) {
     for (const auto fields : {rld_parameter_fields(), rld_extra_fields()}) {
         const auto field = std::ranges::find(fields, key, &RldParameterField::key);
@@ -181,12 +173,31 @@ py::array_t<Value> column(std::span<const Cone> cones, const Of& of) {
     return values;
 }
 
+/// A row of numbers of each item.
+template <typename Item, typename Of>
+py::array_t<double> rows(std::span<const Item> items, const Of& of) {
+    constexpr std::size_t kWidth = std::tuple_size_v<std::invoke_result_t<Of, const Item&>>;
+    py::array_t<double> result({items.size(), kWidth});
+    double* out = result.mutable_data();
+    for (const Item& item : items) out = std::ranges::copy(of(item), out).out;
+    return result;
+}
+
 }  // namespace
 
 Numbers numbers(py::handle object, const char* key) {
     const py::array array = any_array(object, key);
     if (array.size() > 0 && !is_one_of(array.dtype().kind(), "fiu")) refuse_dtype(array, key, "real numbers");
     return Numbers(array);
+}
+
+double number(py::handle object, const std::string& key) {
+    const double value = PyFloat_AsDouble(object.ptr());
+    if (value == -1.0 && PyErr_Occurred() != nullptr) {
+        PyErr_Clear();
+        throw InvalidInput(key, "is not a number");
+    }
+    return value;
 }
 
 std::vector<Point> points(py::handle object, const char* key) {
@@ -281,13 +292,7 @@ Pairing pairing_of(std::string_view name) {
 }
 
 py::array_t<double> array(std::span<const Point> points) {
-    py::array_t<double> result({static_cast<py::ssize_t>(points.size()), py::ssize_t{2}});
-    double* out = result.mutable_data();
-    for (const Point& point : points) {
-        *out++ = point.x();
-        *out++ = point.y();
-    }
-    return result;
+    return rows(points, [](const Point& point) { return std::array{point.x(), point.y()}; });
 }
 
 py::array_t<double> array(const Pose& pose) {
@@ -296,14 +301,10 @@ py::array_t<double> array(const Pose& pose) {
 }
 
 py::array_t<double> array(const DrivableLane& lane) {
-    py::array_t<double> rows({static_cast<py::ssize_t>(lane.points.size()), py::ssize_t{7}});
-    double* out = rows.mutable_data();
-    for (const DrivablePoint& point : lane.points) {
-        for (const double value : {point.s_m, point.position.x(), point.position.y(), point.heading_rad,
-                                   point.curvature_1pm, point.width_left_m, point.width_right_m})
-            *out++ = value;
-    }
-    return rows;
+    return rows(std::span<const DrivablePoint>(lane.points), [](const DrivablePoint& point) {
+        return std::array{point.s_m,           point.position.x(), point.position.y(), point.heading_rad,
+                          point.curvature_1pm, point.width_left_m, point.width_right_m};
+    });
 }
 
 Indices array(std::span<const std::int64_t> values) {
@@ -311,9 +312,7 @@ Indices array(std::span<const std::int64_t> values) {
 }
 
 py::array_t<double> positions(std::span<const Cone> cones) {
-    std::vector<Point> points;
-    for (const Cone& cone : cones) points.push_back(cone.position);
-    return array(points);
+    return rows(cones, [](const Cone& cone) { return std::array{cone.position.x(), cone.position.y()}; });
 }
 
 Indices ids(std::span<const Cone> cones) {
@@ -327,13 +326,10 @@ py::array_t<std::uint8_t> colors(std::span<const Cone> cones) {
 }
 
 py::array_t<double> color_probabilities(std::span<const Cone> cones) {
-    py::array_t<double> rows({static_cast<py::ssize_t>(cones.size()), py::ssize_t{5}});
-    double* out = rows.mutable_data();
-    for (const Cone& cone : cones) {
+    return rows(cones, [](const Cone& cone) {
         const ColorProbabilities p = cone.probabilities();
-        for (const double value : {p.unknown, p.blue, p.yellow, p.orange, p.big_orange}) *out++ = value;
-    }
-    return rows;
+        return std::array{p.unknown, p.blue, p.yellow, p.orange, p.big_orange};
+    });
 }
 
 py::array_t<double> confidences(std::span<const Cone> cones) {
@@ -343,13 +339,12 @@ py::array_t<double> confidences(std::span<const Cone> cones) {
 std::optional<py::array_t<double>> covariances(std::span<const Cone> cones) {
     if (std::ranges::none_of(cones, [](const Cone& cone) { return cone.position_covariance.has_value(); }))
         return std::nullopt;
-    py::array_t<double> matrices({static_cast<py::ssize_t>(cones.size()), py::ssize_t{2}, py::ssize_t{2}});
-    double* out = matrices.mutable_data();
-    for (const Cone& cone : cones) {
-        const PositionCovariance c = cone.position_covariance.value_or(PositionCovariance{});
-        for (const double value : {c.xx_m2, c.xy_m2, c.xy_m2, c.yy_m2}) *out++ = value;
-    }
-    return matrices;
+    return rows(cones,
+                [](const Cone& cone) {
+                    const PositionCovariance c = cone.position_covariance.value_or(PositionCovariance{});
+                    return std::array{c.xx_m2, c.xy_m2, c.xy_m2, c.yy_m2};
+                })
+        .reshape({static_cast<py::ssize_t>(cones.size()), py::ssize_t{2}, py::ssize_t{2}});
 }
 
 std::vector<std::int64_t> indices_of(std::span<const ConeId> ids, std::span<const Cone> cones,

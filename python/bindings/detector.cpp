@@ -1,19 +1,20 @@
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
+#include "conelane/planner.hpp"
 #include "detectors/recipe.hpp"
-#include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 namespace conelane::python {
@@ -31,8 +32,10 @@ std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) 
     return std::filesystem::path(text.cast<std::string>());
 }
 
-/// The options of a detector. `recipe` is nullptr for an unknown detector, which make_detector reports.
-DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given) {
+/// The options that Python gives a detector of that name. Throws InvalidInput if the detector does not use an
+/// option. make_detector reports an unknown name.
+DetectorOptions detector_options(const std::string& name, const py::kwargs& given) {
+    const DetectorRecipe* const recipe = find_recipe(name);
     DetectorOptions options;
     for (const auto& [key_object, value] : given) {
         const std::string key = py::str(key_object);
@@ -50,7 +53,6 @@ DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given
                 "options", "there is no option '" + key + "', only nearest, parameters, pairing, weights");
         }
         if (recipe == nullptr || key == "nearest") continue;
-        const std::string name(recipe->name);
         if (key == "weights") {
             if (!recipe->takes_weights())
                 throw InvalidInput(key, "is of the detectors front and front-warm, '" + name + "' has none");
@@ -61,49 +63,51 @@ DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given
     return options;
 }
 
-}  // namespace
-
-DetectorOptions detector_options(const std::string& name, const py::kwargs& given) {
-    return options_of(find_recipe(name), given);
+/// Calls of one object from several threads wait for each other; the interpreter is free meanwhile. The lock
+/// of the interpreter is released first: the owner of the mutex may need it to finish.
+template <typename Work>
+auto alone(std::mutex& mutex, const Work& work) {
+    const py::gil_scoped_release unlocked;
+    const std::scoped_lock lock(mutex);
+    return work();
 }
 
-namespace {
+/// How long the work takes [ms].
+template <typename Work>
+double timed_ms(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
-/// A detector that may be called from any thread: calls of one instance wait for each other.
+/// A detector that may be called from any thread.
 class DetectorObject {
   public:
     DetectorObject(const std::string& name, const py::kwargs& given) : name_(name) {
-        const DetectorRecipe* const recipe = find_recipe(name);
-        const DetectorOptions options = options_of(recipe, given);
+        const DetectorOptions options = detector_options(name, given);
         detector_ = make_detector(name, options);
+        const DetectorRecipe* const recipe = find_recipe(name);
         description_ = recipe->description;
         nearest_ = cone_set(*recipe, options).nearest;
     }
 
     [[nodiscard]] LaneObject detect(std::shared_ptr<const Scene> scene, std::optional<double> time_limit_ms) {
-        const double limit_ms = time_limit_ms.value_or(std::numeric_limits<double>::infinity());
-        if (std::isnan(limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
+        const DetectionLimits limits{.time_limit_ms = limit_of(time_limit_ms)};
+        if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
         LaneObject lane{{}, std::move(scene)};
-        lane.record.scene = lane.scene->id;
-        lane.record.detector = name_;
-        lane.record.nearest = nearest_;
-        const py::gil_scoped_release unlocked;  // before the mutex: its owner may need this lock to finish
-        {
-            const std::scoped_lock lock(mutex_);
-            const auto start = std::chrono::steady_clock::now();
-            lane.record.answer = detector_->detect(*lane.scene, {.time_limit_ms = limit_ms});
-            const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-            lane.record.latency_ms = took.count();
-        }
-        if (lane.record.answer.status == LaneStatus::error)
+        LaneRecord& record = lane.record;
+        record.scene = lane.scene->id;
+        record.detector = name_;
+        record.nearest = nearest_;
+        const auto detect = [&] { record.answer = detector_->detect(*lane.scene, limits); };
+        record.latency_ms = alone(mutex_, [&] { return timed_ms(detect); });
+        if (record.answer.status == LaneStatus::error)
             validate(*lane.scene);  // throws if the scene is invalid
         return lane;
     }
 
     void reset() {
-        const py::gil_scoped_release unlocked;
-        const std::scoped_lock lock(mutex_);
-        detector_->reset();
+        alone(mutex_, [this] { detector_->reset(); });
     }
 
     [[nodiscard]] const std::string& name() const { return name_; }
@@ -117,42 +121,45 @@ class DetectorObject {
     std::mutex mutex_;
 };
 
-}  // namespace
+LaneObject detect(DetectorObject& detector, const py::object& cones, const py::object& pose,
+                  const py::object& ids, const py::object& colors, const py::object& confidences,
+                  std::optional<double> time_limit_ms, const py::object& covariances) {
+    auto scene = std::make_shared<Scene>();
+    scene->cones = python::cones(cones, ids, colors, confidences, covariances);
+    scene->pose = python::pose(pose);
+    return detector.detect(std::move(scene), time_limit_ms);
+}
 
-void add_detector(py::module_& module) {
-    py::class_<DetectorObject>(module, "Detector", R"(Detector(name, **options)
+LaneObject detect_scene(DetectorObject& detector, const SceneObject& scene,
+                        std::optional<double> time_limit_ms) {
+    return detector.detect({scene, &scene->scene}, time_limit_ms);
+}
+
+py::dict methods() {
+    py::dict all;
+    for (const DetectorInfo& info : detectors())
+        all[py::str(std::string(info.name))] = std::string(info.description);
+    return all;
+}
+
+constexpr const char* kDetector = R"(Detector(name: str, **options)
 
 A lane detector.
 
-Parameters
-----------
-name : str
-    One of `methods()`.
-nearest : int, optional
-    Number of cones that it uses: the nearest ones ahead of the car.
-parameters : str or dict, optional
-    Of the detectors `rld-...`: the name of a parameter set, or a dict of the values that differ from the
+name: One of `methods()`.
+nearest: Number of cones that it uses: the nearest ones ahead of the car.
+parameters: Of the detectors `rld-...`: the name of a parameter set, or a dict of the values that differ from the
     defaults; see `rld_parameters`.
-pairing : str, optional
-    Of the detectors `rld-...`: "near_far" or "paper".
-weights : str, os.PathLike or bytes, optional
-    Of the detectors `front` and `front-warm`: weights of your own instead of the shipped ones. The path of a file
-    that ``conelane train front --out FILE`` wrote, or its content as bytes.
-
-Raises
-------
-ValueError
-    For an unknown name or option, listing the known ones, for an option that the detector does not use, for
+pairing: Of the detectors `rld-...`: "near_far" or "paper".
+weights: Of the detectors `front` and `front-warm`: weights of your own instead of the shipped ones. The path of a
+    file that ``conelane train front --out FILE`` wrote, or its content as bytes.
+Raises ValueError for an unknown name or option, listing the known ones, for an option that the detector does not use, for
     values out of range, and for weights that cannot be read.
 
-Notes
------
 Detectors are independent of each other, and the interpreter lock is free while they search: use one for each
 thread. Calls of one detector from several threads wait for each other; the wait does not count in the time
 limit.
 
-Examples
---------
 >>> import conelane
 >>> detector = conelane.Detector("front")
 >>> lane = detector.detect([[2, -1.5], [2, 1.5], [6, -1.5], [6, 1.5], [10, -1.5], [10, 1.5]], (0, 0, 0))
@@ -160,104 +167,240 @@ Examples
 'found'
 >>> lane.left, lane.right
 (array([1, 3, 5]), array([0, 2, 4]))
-)")
-        .def(py::init<const std::string&, const py::kwargs&>(), py::arg("name"))
-        .def(
-            "detect",
-            [](DetectorObject& detector, const py::object& cones, const py::object& pose,
-               const py::object& ids, const py::object& colors, const py::object& confidences,
-               std::optional<double> time_limit_ms, const py::object& covariances) {
-                auto scene = std::make_shared<Scene>();
-                scene->cones = python::cones(cones, ids, colors, confidences, covariances);
-                scene->pose = python::pose(pose);
-                return detector.detect(std::move(scene), time_limit_ms);
-            },
-            py::arg("cones"), py::arg("pose"), py::arg("ids") = py::none(), py::arg("colors") = py::none(),
-            py::arg("confidences") = py::none(), py::arg("time_limit_ms") = 50.0, py::kw_only(),
-            py::arg("covariances") = py::none(),
-            R"(detect(cones, pose, ids=None, colors=None, confidences=None, time_limit_ms=50.0, *, covariances=None)
+)";
+
+constexpr const char* kDetect =
+    R"(detect(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None,
+       confidences: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 50.0, *,
+       covariances: Optional[ArrayLike] = None) -> Lane
 
 The lane among cones.
 
-Parameters
-----------
-cones : (N, 2) array_like of float
-    Positions x, y [m], in any order, in the frame of `pose`: a map, or the car.
-pose : (3,) array_like of float
-    The car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a frame of the car with x ahead and y
+cones: (N, 2), positions x, y [m], in any order, in the frame of `pose`: a map, or the car.
+pose: (3,), the car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a frame of the car with x ahead and y
     to the left it is (0, 0, 0).
-ids : (N,) array_like of int, optional
-    Distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its
-    id. By default the index.
-colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
-    "unknown", "blue", "yellow", "orange", "big_orange", or their codes 0 to 4 (`Color`). Or probabilities of unknown, blue,
-    yellow, small orange and big orange, which add up to 1 for each cone: `front` uses them, other detectors
-    the most probable label. By default unknown.
-confidences : (N,) array_like of float, optional
-    Of the detections, in [0, 1]. By default 1.
-time_limit_ms : float or None
-    Wall clock [ms]; None for no limit.
-covariances : (N, 2, 2) array_like of float, optional
-    Of the positions [m^2], in the frame of `pose`: symmetric and positive semidefinite. `front` uses them. By
-    default unknown, which is the same as 0.
+ids: (N,), distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its id.
+    By default the index.
+colors: (N,), "unknown", "blue", "yellow", "orange", "big_orange", or their codes 0 to 4 (`Color`). Or probabilities
+    of unknown, blue, yellow, small orange and big orange, which add up to 1 for each cone: `front` uses them, other
+    detectors the most probable label. By default unknown.
+confidences: (N,), of the detections, in [0, 1]. By default 1.
+time_limit_ms: Wall clock [ms]; None for no limit.
+covariances: (N, 2, 2), of the positions [m^2], in the frame of `pose`: symmetric and positive semidefinite. `front`
+    uses them. By default unknown, which is the same as 0.
+Raises ValueError for wrong shapes and dtypes, numbers that are not finite, an invalid covariance, and an id that occurs
+    twice.
 
-Returns
--------
-Lane
-
-Raises
-------
-ValueError
-    For wrong shapes and dtypes, numbers that are not finite, an invalid covariance, and an id that occurs twice.
-
-Examples
---------
 >>> import conelane
 >>> conelane.Detector("clc").detect([[0.0, float("nan")]], (0, 0, 0))
 Traceback (most recent call last):
     ...
 ValueError: cones[0].y: must be a finite number
-)")
-        .def(
-            "detect_scene",
-            [](DetectorObject& detector, const SceneObject& scene, std::optional<double> time_limit_ms) {
-                return detector.detect({scene, &scene->scene}, time_limit_ms);
-            },
-            py::arg("scene"), py::arg("time_limit_ms") = 50.0, R"(detect_scene(scene, time_limit_ms=50.0)
+)";
+
+constexpr const char* kDetectScene =
+    R"(detect_scene(scene: Scene, time_limit_ms: Optional[float] = 50.0) -> Lane
 
 The same for a `Scene`. The lane has the scene's id.
-)")
-        .def("reset", &DetectorObject::reset, R"(reset()
+)";
 
-Forgets earlier calls: for a new lap or another place.
-)")
-        .def_property_readonly("name", &DetectorObject::name, "str: as `methods` has it")
-        .def_property_readonly("meaning", &DetectorObject::description, "str: one line")
-        .def("__repr__",
-             [](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
-
-    module.def(
-        "methods",
-        [] {
-            py::dict all;
-            for (const DetectorInfo& info : detectors())
-                all[py::str(std::string(info.name))] = std::string(info.description);
-            return all;
-        },
-        R"(methods()
+constexpr const char* kMethods = R"(methods() -> Dict[str, str]
 
 The detectors of the library, by name, with their descriptions. The first one is for driving.
 
-Returns
--------
-dict of str to str
-
-Examples
---------
 >>> import conelane
 >>> "clc" in conelane.methods()
 True
-)");
+)";
+
+struct PlanObject : Plan {
+    double latency_ms = 0.0;
+};
+
+/// A planner that may be called from any thread.
+class PlannerObject {
+  public:
+    explicit PlannerObject(const PlannerOptions& options)
+        : mission_(options.mission), detector_(options.detector), planner_(make_planner(options)) {}
+
+    [[nodiscard]] PlanObject update(const Frame& frame, std::optional<double> time_limit_ms) {
+        PlanObject plan;
+        plan.latency_ms = alone(mutex_, [&] {
+            return timed_ms([&] {
+                static_cast<Plan&>(plan) =
+                    planner_->update(frame, {.time_limit_ms = limit_of(time_limit_ms)});
+            });
+        });
+        return plan;
+    }
+
+    [[nodiscard]] std::optional<DrivableLane> course() {
+        return alone(mutex_, [this] { return planner_->course(); });
+    }
+
+    void reset() {
+        alone(mutex_, [this] { planner_->reset(); });
+    }
+
+    [[nodiscard]] Mission mission() const { return mission_; }
+    [[nodiscard]] const std::string& detector() const { return detector_; }
+
+  private:
+    Mission mission_;
+    std::string detector_;
+    std::unique_ptr<Planner> planner_;
+    std::mutex mutex_;
+};
+
+PlanObject update(PlannerObject& planner, const py::object& cones, const py::object& pose,
+                  const py::object& time_s, const py::object& ids, const py::object& colors,
+                  std::optional<double> time_limit_ms, const py::object& confidences,
+                  const py::object& covariances) {
+    Frame frame{number(time_s, "time_s"), python::pose(pose),
+                python::cones(cones, ids, colors, confidences, covariances)};
+    if (ids.is_none()) {
+        for (Cone& cone : frame.cones) cone.id = kNoId;
+    }
+    return planner.update(frame, time_limit_ms);
+}
+
+std::optional<py::array_t<double>> course(PlannerObject& planner) {
+    const std::optional<DrivableLane> course = planner.course();
+    if (!course) return std::nullopt;
+    return array(*course);
+}
+
+constexpr const char* kPlanner =
+    R"(Planner(mission: str = "trackdrive", detector: str = "front-warm", laps: Optional[int] = None, *,
+        max_age_s: float = 1.0, step_m: float = 0.5, smoothing_m: float = 1.75, max_gap_m: float = 5.5,
+        default_width_m: float = 3.5, **options)
+
+The path to drive in each frame of an event, from the start line to the stop.
+
+mission: "trackdrive", "autocross", "acceleration" or "skidpad".
+detector: One of `methods()`.
+laps: Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
+max_age_s: Largest age of a lane that is still driven [s].
+step_m, smoothing_m, max_gap_m, default_width_m: Of the lanes in plans, see `Lane.drivable`.
+nearest, parameters, pairing, weights: Options of the detector, see `Detector`.
+Raises ValueError for an unknown mission, detector or option, for one that the mission or the detector does not use, and for
+    values out of range.
+
+Planners are independent of each other, and the interpreter lock is free while they plan: use one for each run.
+Calls of one planner from several threads wait for each other.
+
+>>> import conelane
+>>> planner = conelane.Planner(mission="autocross")
+>>> cones = [[x, y] for x in (2, 6, 10, 14) for y in (-1.5, 1.5)]
+>>> plan = planner.update(cones, (0, 0, 0), time_s=0.0)
+>>> plan.state, plan.lap, plan.stop
+('following', 0, False)
+>>> plan = planner.update([], (1, 0, 0), time_s=0.1)
+>>> plan.state, plan.age_s
+('bridging', 0.1)
+>>> bool(plan.centre_line[0, 1] > 0.9)
+True
+)";
+
+constexpr const char* kUpdate =
+    R"(update(cones: ArrayLike, pose: ArrayLike, time_s: float, ids: Optional[ArrayLike] = None,
+       colors: Optional[ArrayLike] = None, time_limit_ms: Optional[float] = 20.0, *,
+       confidences: Optional[ArrayLike] = None, covariances: Optional[ArrayLike] = None) -> Plan
+
+The plan of the next frame.
+
+cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
+pose: (3,), the car in a fixed map: x, y [m] and yaw [rad].
+time_s: Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
+    nothing: its plan is the last plan, with the state "bridging" if the frame is older.
+ids: (N,), distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised
+    by its place.
+colors: (N,), as in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on
+    both sides of the lane are the start line, big ones before others.
+time_limit_ms: Of the detector, wall clock [ms]; None for no limit.
+confidences: (N,), of the detections, in [0, 1]. By default 1.
+covariances: (N, 2, 2), as of `Detector.detect`. They are checked, and the planner does not use them: it keeps means
+    of many sightings.
+Raises ValueError for wrong shapes and dtypes, numbers that are not finite, and an id that occurs twice; the planner then
+    stays unchanged.
+)";
+
+constexpr const char* kCourse = R"(course() -> Optional[NDArray[float64]]
+
+The whole course, once a lap is known.
+Returns (N, 7), columns as of `Lane.centre_line`; the last row is one step before the first one. None before that, and
+    in acceleration and skidpad.
+)";
+
+void add_plan(py::module_& module) {
+    Class<PlanObject>(module, "Plan", "The path to drive. Every attribute is a copy.")
+        .get(
+            "state",
+            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame; "bridging": no lane in this
+frame, so the rest of an earlier one; "lost": no earlier lane is left, so there is no path: brake; "finished": the
+last line is crossed, and the lane is the stretch on which to come to rest.)",
+            &PlanObject::state, kName)
+        .get(
+            "centre_line",
+            R"(NDArray[float64]: (N, 7), that of `lane`, from the car on. N is 0 if the state is "searching" or "lost", and when the
+car is at rest at the end.)",
+            &PlanObject::lane, kArray)
+        .get("lane", "DrivableLane: the lane to drive", &Plan::lane)
+        .get("safe_m", "float: trusted length along `centre_line`, or the rest of it [m]", &Plan::safe_m)
+        .get("age_s", "float: age of the frame that the lane is from [s]; 0 if following", &Plan::age_s)
+        .get("lap", "int: number of start lines crossed since the start; in skidpad, of completed circles",
+             &Plan::lap)
+        .get("stop", "bool: come to rest within the rest of `centre_line`", &Plan::stop)
+        .get("phase",
+             R"(str: of skidpad "approach", "right 1", "right 2", "left 1", "left 2" or "exit"; else empty)",
+             &Plan::phase)
+        .get("answer", "Answer: of the detector in this frame", &Plan::answer)
+        .get("latency_ms", "float: wall clock of the update [ms]", &PlanObject::latency_ms)
+        .repr([](const PlanObject& p) {
+            return fmt::format("<conelane.Plan {}: {:.1f} m>", to_string(p.state), p.lane.length_m);
+        });
+}
+
+void add_planner(py::module_& module) {
+    add_plan(module);
+    Class<PlannerObject>(module, "Planner", kPlanner)
+        .init([](const std::string& mission, const std::string& detector, std::optional<int> laps,
+                 double max_age_s, double step_m, double smoothing_m, double max_gap_m,
+                 double default_width_m, const py::kwargs& given) {
+            return std::make_unique<PlannerObject>(
+                PlannerOptions{mission_named(mission),
+                               detector,
+                               detector_options(detector, given),
+                               laps,
+                               {step_m, smoothing_m, max_gap_m, default_width_m},
+                               max_age_s});
+        })
+        .method(kUpdate, update)
+        .method(kCourse, course)
+        .method("reset() -> None\n\nForgets the run.\n", &PlannerObject::reset)
+        .get("mission", "str: its name", &PlannerObject::mission, kName)
+        .get("detector", "str: its name", &PlannerObject::detector)
+        .repr([](const PlannerObject& p) {
+            return fmt::format("<conelane.Planner '{}' by '{}'>", to_string(p.mission()), p.detector());
+        });
+}
+
+}  // namespace
+
+void add_detector(py::module_& module) {
+    Class<DetectorObject>(module, "Detector", kDetector)
+        .init([](const std::string& name, const py::kwargs& given) {
+            return std::make_unique<DetectorObject>(name, given);
+        })
+        .method(kDetect, detect)
+        .method(kDetectScene, detect_scene)
+        .method("reset() -> None\n\nForgets earlier calls: for a new lap or another place.\n",
+                &DetectorObject::reset)
+        .get("name", "str: as `methods` has it", &DetectorObject::name)
+        .get("meaning", "str: one line", &DetectorObject::description)
+        .repr([](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
+    add_function(module, kMethods, methods);
+    add_planner(module);
 }
 
 }  // namespace conelane::python

@@ -3,7 +3,6 @@
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <filesystem>
@@ -82,130 +81,54 @@ void write_lanes(const std::filesystem::path& file, const std::vector<const Lane
     conelane::write_lanes(file, records);
 }
 
-std::optional<double> objective(const LaneObject& lane) {
+/// A number of the detector's proof, if it has one.
+template <typename Value>
+std::optional<double> of_proof(const LaneObject& lane, Value value) {
     if (!lane.record.answer.optimality) return std::nullopt;
-    return lane.record.answer.optimality->objective;
+    return (*lane.record.answer.optimality).*value;
 }
 
-void add_answer(py::class_<LaneObject>& lane) {
-    lane.def_property_readonly(
-            "status", [](const LaneObject& l) { return to_string(l.record.answer.status); },
-            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before
-a lane that can be driven was found; "error": see `message`.)")
-        .def_property_readonly(
-            "found", [](const LaneObject& l) { return l.record.answer.status == LaneStatus::found; },
-            "bool: whether the status is \"found\"")
-        .def_property_readonly(
-            "message", [](const LaneObject& l) { return l.record.answer.message; },
-            "str: of an error, or of a lane that is stopped because it cannot be driven")
-        .def_property_readonly(
-            "stopped_by",
-            [](const LaneObject& l) -> std::optional<std::string_view> {
-                if (!l.record.answer.stopped_by) return std::nullopt;
-                return to_string(*l.record.answer.stopped_by);
-            },
-            R"(str or None: the limit that ended the search: "time", "iterations" or "memory")")
-        .def_property_readonly(
-            "confidence", [](const LaneObject& l) { return l.record.answer.confidence; },
-            "float or None: probability that the lane is usable; None if the detector has none")
-        .def_property_readonly(
-            "trusted_m", [](const LaneObject& l) { return l.record.answer.trusted_m; },
-            R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:
-with a `confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was
-found, or if a file does not have it: do not trust that lane.)")
-        .def_property_readonly(
-            "merged",
-            [](const LaneObject& l) {
-                py::dict merged;
-                for (const auto& [cone, into] : l.record.answer.merged) merged[py::int_(cone)] = into;
-                return merged;
-            },
-            R"(dict of int to int: ids of the cones that the detector left out, because each is within 0.12 m of another
-cone (front, front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)")
-        .def_property_readonly("objective", objective, "float or None: of a detector that states one")
-        .def_property_readonly(
-            "bound",
-            [](const LaneObject& l) -> std::optional<double> {
-                if (!l.record.answer.optimality) return std::nullopt;
-                return l.record.answer.optimality->bound;
-            },
-            "float or None: proven lower bound of the objective")
-        .def_property_readonly(
-            "latency_ms", [](const LaneObject& l) { return l.record.latency_ms; },
-            "float: wall clock of the search [ms]")
-        .def_property_readonly(
-            "method", [](const LaneObject& l) { return l.record.detector; }, "str: name of the detector")
-        .def_property_readonly(
-            "scene_id", [](const LaneObject& l) { return l.record.scene; },
-            "str: id of the scene that it answers; empty for arrays");
+py::dict merged(const LaneObject& lane) {
+    py::dict merged;
+    for (const auto& [cone, into] : lane.record.answer.merged) merged[py::int_(cone)] = into;
+    return merged;
 }
 
-void add_geometry(py::class_<LaneObject>& lane) {
-    lane.def_property_readonly(
-            "left", [](const LaneObject& l) { return boundary_indices(l, true); },
-            R"((L,) ndarray of int64: the cones of the left boundary from the car outward, as indices into `cones`; empty
-if no lane, or only the right boundary, was found.)")
-        .def_property_readonly(
-            "right", [](const LaneObject& l) { return boundary_indices(l, false); },
-            "(R,) ndarray of int64: the same for the right boundary")
-        .def_property_readonly(
-            "left_points", [](const LaneObject& l) { return array(boundary(l, true)); },
-            "(L, 2) ndarray of float64: the left boundary's positions [m]")
-        .def_property_readonly(
-            "right_points", [](const LaneObject& l) { return array(boundary(l, false)); },
-            "(R, 2) ndarray of float64: the right boundary's positions [m]")
-        .def_property_readonly(
-            "closed", [](const LaneObject& l) { return l.record.answer.lane.closed; },
-            "bool: a whole circuit, in which each boundary returns from its last cone to its first")
-        .def_property_readonly(
-            "cones", [](const LaneObject& l) { return positions(l.scene->cones); },
-            "(N, 2) ndarray of float64: all cones that the detector was given [m]")
-        .def_property_readonly(
-            "ids", [](const LaneObject& l) { return python::ids(l.scene->cones); },
-            "(N,) ndarray of int64: ids of those cones")
-        .def_property_readonly(
-            "colors", [](const LaneObject& l) { return python::colors(l.scene->cones); },
-            "(N,) ndarray of uint8: codes, see `Color`")
-        .def_property_readonly(
-            "pose", [](const LaneObject& l) { return array(l.scene->pose); },
-            "(3,) ndarray of float64: x, y [m] and yaw [rad] of the car")
-        .def(
-            "centre_line",
-            [](const LaneObject& l, double step_m, double smoothing_m, double usual_width_m) {
-                try {
-                    return array(drivable(
-                        l, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = usual_width_m}));
-                } catch (const InvalidInput& error) {
-                    if (error.key() != "default_width_m") throw;
-                    throw InvalidInput("usual_width_m",
-                                       std::string(error.what()).substr(error.key().size() + 2));
-                }
-            },
-            py::arg("step_m") = DrivableOptions{}.step_m, py::kw_only(),
-            py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
-            py::arg("usual_width_m") = DrivableOptions{}.default_width_m,
-            R"(centre_line(step_m=0.5, *, smoothing_m=1.75, usual_width_m=3.5)
+py::array_t<double> centre_line(const LaneObject& lane, double step_m, double smoothing_m,
+                                double usual_width_m) {
+    try {
+        return array(
+            drivable(lane, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = usual_width_m}));
+    } catch (const InvalidInput& error) {
+        if (error.key() != "default_width_m") throw;
+        throw InvalidInput("usual_width_m", std::string(error.what()).substr(error.key().size() + 2));
+    }
+}
+
+std::string text_of(const LaneObject& lane) {
+    const LaneRecord& record = lane.record;
+    return fmt::format("<conelane.Lane {}: {} left, {} right of {} cones>", to_string(record.answer.status),
+                       record.points ? record.points->left.size() : record.answer.lane.left.size(),
+                       record.points ? record.points->right.size() : record.answer.lane.right.size(),
+                       lane.scene->cones.size());
+}
+
+static_assert(DrivableOptions{}.step_m == 0.5 && DrivableOptions{}.smoothing_m == 1.75 &&
+                  DrivableOptions{}.max_gap_m == 5.5 && DrivableOptions{}.default_width_m == 3.5,
+              "the docstrings have the defaults");
+
+constexpr const char* kCentreLine =
+    R"(centre_line(step_m: float = 0.5, *, smoothing_m: float = 1.75, usual_width_m: float = 3.5) -> NDArray[float64]
 
 The middle of the lane from the car on.
 
-Parameters
-----------
-step_m : float
-    Arc length from point to point [m], in [0.01, 100].
-smoothing_m : float
-    Length scale of the smoothing [m], in [0.25, 5].
-usual_width_m : float
-    Width of a lane of which only one boundary was found [m], in [1, 6.5].
-
-Returns
--------
-(M, 7) ndarray of float64
-    Columns: s, the arc length from the car's foot point [m]; x, y [m]; heading [rad], in (-pi, pi]; curvature
-    [1/m], positive in a left bend; distance to the left and to the right boundary [m]. M is 0 if there is
+step_m: Arc length from point to point [m], in [0.01, 100].
+smoothing_m: Length scale of the smoothing [m], in [0.25, 5].
+usual_width_m: Width of a lane of which only one boundary was found [m], in [1, 6.5].
+Returns (M, 7), columns: s, the arc length from the car's foot point [m]; x, y [m]; heading [rad], in (-pi, pi];
+    curvature [1/m], positive in a left bend; distance to the left and to the right boundary [m]. M is 0 if there is
     no lane.
 
-Examples
---------
 >>> import conelane
 >>> cones = [[0, -1.5], [0, 1.5], [4, -1.5], [4, 1.5], [8, -1.5], [8, 1.5]]
 >>> line = conelane.Detector("front").detect(cones, (0, 0, 0)).centre_line(step_m=2)
@@ -213,137 +136,268 @@ Examples
 (5, 7)
 >>> line[:, 0].tolist()
 [0.0, 2.0, 4.0, 6.0, 8.0]
-)")
-        .def(
-            "drivable",
-            [](const LaneObject& l, double step_m, double smoothing_m, double max_gap_m,
-               double default_width_m) {
-                return drivable(l, {step_m, smoothing_m, max_gap_m, default_width_m});
-            },
-            py::arg("step_m") = DrivableOptions{}.step_m, py::kw_only(),
-            py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
-            py::arg("max_gap_m") = DrivableOptions{}.max_gap_m,
-            py::arg("default_width_m") = DrivableOptions{}.default_width_m,
-            R"(drivable(step_m=0.5, *, smoothing_m=1.75, max_gap_m=5.5, default_width_m=3.5)
+)";
+
+constexpr const char* kDrivable =
+    R"(drivable(step_m: float = 0.5, *, smoothing_m: float = 1.75, max_gap_m: float = 5.5,
+         default_width_m: float = 3.5) -> DrivableLane
 
 The centre line with the gaps that it bridges and the boundary that was inferred.
 
-Parameters
-----------
-step_m, smoothing_m : float
-    As of `centre_line`.
-max_gap_m : float
-    Longer gaps of a boundary are reported as bridged [m].
-default_width_m : float
-    The `usual_width_m` of `centre_line`.
+step_m, smoothing_m: As of `centre_line`.
+max_gap_m: Longer gaps of a boundary are reported as bridged [m].
+default_width_m: The `usual_width_m` of `centre_line`.
+)";
 
-Returns
--------
-DrivableLane
-)")
-        .def(
-            "plot",
-            [](const py::object& self, const py::object& ax) {
-                return py::module_::import("conelane._plot").attr("plot_lane")(self, ax);
-            },
-            py::arg("ax") = py::none(), R"(plot(ax=None)
+constexpr const char* kPlot = R"(plot(ax: Optional[Axes] = None) -> Axes
 
 Draws cones, both boundaries, the centre line and the car. Needs matplotlib.
 
-Parameters
-----------
-ax : matplotlib.axes.Axes, optional
-    By default those of the current figure.
+ax: By default those of the current figure.
+)";
 
-Returns
--------
-matplotlib.axes.Axes
-)")
-        .def("__repr__", [](const LaneObject& l) {
-            const LaneRecord& record = l.record;
-            return fmt::format("<conelane.Lane {}: {} left, {} right of {} cones>",
-                               to_string(record.answer.status),
-                               record.points ? record.points->left.size() : record.answer.lane.left.size(),
-                               record.points ? record.points->right.size() : record.answer.lane.right.size(),
-                               l.scene->cones.size());
+constexpr const char* kReadLanes =
+    R"(read_lanes(file: Union[str, "PathLike[str]"], scenes: Sequence[Scene]) -> List[Lane]
+
+Lanes of a `*.lanes.jsonl` file.
+
+scenes: The scenes of the lanes, found by id.
+Raises ValueError, naming file, line and key.
+)";
+
+constexpr const char* kWriteLanes =
+    R"(write_lanes(file: Union[str, "PathLike[str]"], lanes: Sequence[Lane]) -> None
+
+Writes a `*.lanes.jsonl` file. If that fails, an old file stays unchanged.
+)";
+
+/// What a lane and the answer in a plan say; `steps` lead to the detector's answer.
+template <typename Object, typename... Steps>
+void add_answer(Class<Object>& object, Steps... steps) {
+    object
+        .get(
+            "status",
+            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before a lane
+that can be driven was found; "error": see `message`.)",
+            steps..., &LaneAnswer::status, kName)
+        .get("found", "bool: whether the status is \"found\"", steps..., &LaneAnswer::status,
+             [](LaneStatus status) { return status == LaneStatus::found; })
+        .get("message", "str: of an error, or of a lane that is stopped because it cannot be driven",
+             steps..., &LaneAnswer::message)
+        .get("stopped_by",
+             R"(Optional[str]: the limit that ended the search: "time", "iterations" or "memory")", steps...,
+             &LaneAnswer::stopped_by, kName)
+        .get("confidence",
+             "Optional[float]: probability that the lane is usable; None if the detector has none", steps...,
+             &LaneAnswer::confidence)
+        .get(
+            "trusted_m",
+            R"(Optional[float]: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one: with a
+`confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was found, or if a
+file does not have it: do not trust that lane.)",
+            steps..., &LaneAnswer::trusted_m);
+}
+
+void add_boundaries(Class<LaneObject>& lane) {
+    lane.get(
+            "left",
+            R"(NDArray[int64]: (L,), the cones of the left boundary from the car outward, as indices into `cones`; empty if no lane,
+or only the right boundary, was found.)",
+            [](const LaneObject& l) { return boundary_indices(l, true); })
+        .get("right", "NDArray[int64]: (R,), the same for the right boundary",
+             [](const LaneObject& l) { return boundary_indices(l, false); })
+        .get("left_points", "NDArray[float64]: (L, 2), the left boundary's positions [m]",
+             [](const LaneObject& l) { return array(boundary(l, true)); })
+        .get("right_points", "NDArray[float64]: (R, 2), the right boundary's positions [m]",
+             [](const LaneObject& l) { return array(boundary(l, false)); })
+        .get("closed",
+             "bool: a whole circuit, in which each boundary returns from its last cone to its first",
+             [](const LaneObject& l) { return l.record.answer.lane.closed; })
+        .method(kCentreLine, centre_line)
+        .method(kDrivable,
+                [](const LaneObject& l, double step_m, double smoothing_m, double max_gap_m,
+                   double default_width_m) {
+                    return drivable(l, {step_m, smoothing_m, max_gap_m, default_width_m});
+                })
+        .method(kPlot,
+                [](const py::object& self, const py::object& ax) {
+                    return py::module_::import("conelane._plot").attr("plot_lane")(self, ax);
+                })
+        .repr(text_of);
+}
+
+void add_record(Class<LaneObject>& lane) {
+    lane.cones(&LaneObject::scene, &Scene::cones)
+        .get("pose", "NDArray[float64]: (3,), x, y [m] and yaw [rad] of the car", &LaneObject::scene,
+             &Scene::pose, kArray)
+        .get(
+            "merged",
+            R"(Dict[int, int]: ids of the cones that the detector left out, because each is within 0.12 m of another cone (front,
+front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)",
+            merged)
+        .get("objective", "Optional[float]: of a detector that states one",
+             [](const LaneObject& l) { return of_proof(l, &Optimality::objective); })
+        .get("bound", "Optional[float]: proven lower bound of the objective",
+             [](const LaneObject& l) { return of_proof(l, &Optimality::bound); })
+        .get("latency_ms", "float: wall clock of the search [ms]", &LaneObject::record,
+             &LaneRecord::latency_ms)
+        .get("method", "str: name of the detector", &LaneObject::record, &LaneRecord::detector)
+        .get("scene_id", "str: id of the scene that it answers; empty for arrays", &LaneObject::record,
+             &LaneRecord::scene);
+}
+
+void add_answer_of_plan(py::module_& module) {
+    Class<LaneAnswer> answer(module, "Answer", "The detector's answer to a frame.");
+    add_answer(answer);
+    answer
+        .get(
+            "left_ids",
+            R"(NDArray[int64]: (L,), cones of the left boundary from the car outward, by the ids of the frames; a cone without an id
+has a negative id of the planner's own)",
+            &LaneAnswer::lane, &Lane::left, kArray)
+        .get("right_ids", "NDArray[int64]: (R,), the same for the right boundary", &LaneAnswer::lane,
+             &Lane::right, kArray)
+        .repr([](const LaneAnswer& a) {
+            return fmt::format("<conelane.Answer {}: {} left, {} right>", to_string(a.status),
+                               a.lane.left.size(), a.lane.right.size());
         });
 }
 
 void add_drivable_lane(py::module_& module) {
-    py::class_<DrivableLane>(module, "DrivableLane",
-                             R"(A lane ready to be driven. Every attribute is a copy.)")
-        .def_property_readonly(
-            "centre_line", [](const DrivableLane& d) { return array(d); },
-            "(N, 7) ndarray of float64: columns as of `Lane.centre_line`")
-        .def_readonly("closed", &DrivableLane::closed, "bool: the last row is one step before the first one")
-        .def_readonly("length_m", &DrivableLane::length_m, "float: of the centre line [m]")
-        .def_readonly("trusted_m", &DrivableLane::trusted_m,
-                      "float or None: arc length up to which the detector trusts the lane [m]")
-        .def_property_readonly(
+    Class<DrivableLane>(module, "DrivableLane", "A lane ready to be driven. Every attribute is a copy.")
+        .get("centre_line", "NDArray[float64]: (N, 7), columns as of `Lane.centre_line`",
+             [](const DrivableLane& d) { return array(d); })
+        .get("closed", "bool: the last row is one step before the first one", &DrivableLane::closed)
+        .get("length_m", "float: of the centre line [m]", &DrivableLane::length_m)
+        .get("trusted_m", "Optional[float]: arc length up to which the detector trusts the lane [m]",
+             &DrivableLane::trusted_m)
+        .get(
             "bridged",
+            R"(List[Tuple[str, float, float]]: gaps between successive cones longer than `max_gap_m`, in which a cone is missing or
+was not seen: "left" or "right", and the arc lengths beside the two cones [m])",
             [](const DrivableLane& d) {
                 py::list gaps;
                 for (const BridgedGap& gap : d.bridged)
                     gaps.append(py::make_tuple(gap.on_left ? "left" : "right", gap.from_s_m, gap.to_s_m));
                 return gaps;
-            },
-            R"(list of (str, float, float): gaps between successive cones longer than `max_gap_m`, in which a cone is
-missing or was not seen: "left" or "right", and the arc lengths beside the two cones [m])")
-        .def_readonly("left_inferred", &DrivableLane::left_inferred,
-                      "bool: no cone of the left boundary is known, it is assumed at `default_width_m`")
-        .def_readonly("right_inferred", &DrivableLane::right_inferred,
-                      "bool: the same for the right boundary");
+            })
+        .get("left_inferred",
+             "bool: no cone of the left boundary is known, it is assumed at `default_width_m`",
+             &DrivableLane::left_inferred)
+        .get("right_inferred", "bool: the same for the right boundary", &DrivableLane::right_inferred);
+}
+
+CentreLine line_of(const LaneObject& lane, const AnnotatedScene& scene) {
+    const LaneRecord& record = lane.record;
+    const Pose& pose = scene.scene.pose;
+    if (record.points) {
+        return centre_line_of(
+            LaneOutline{record.points->left, record.points->right, record.answer.lane.closed}, pose);
+    }
+    if (!record.centre_line.empty()) return centre_line_of(record.centre_line, pose);
+    return centre_line_of(outline_of(record.answer.lane, scene.scene), pose);
+}
+
+SceneScore score_of(const LaneObject& lane, const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
+    const LaneRecord& record = lane.record;
+    if (record.points) {
+        return score_outline(scene, {record.points->left, record.points->right, record.answer.lane.closed},
+                             record.latency_ms, boundaries);
+    }
+    if (!record.centre_line.empty())
+        return score_centre_line(scene, record.centre_line, record.latency_ms, boundaries);
+    return score(scene, record.answer, record.latency_ms, record.nearest, boundaries);
+}
+
+SceneScore score(const AnnotatedScene& scene, const LaneObject& lane, const TrackBoundaries* boundaries) {
+    const py::gil_scoped_release unlocked;
+    conelane::validate(scene.scene);
+    SceneScore score = score_of(lane, scene, boundaries);
+    if (score.usable().value_or(false) && scene.ground_truth) {
+        const auto truth = centre_line_of(outline_of(*scene.ground_truth, scene.scene), scene.scene.pose);
+        score.centre_line_error = centre_line_error(line_of(lane, scene), truth);
+    }
+    return score;
+}
+
+std::optional<bool> accurate(const SceneScore& score) {
+    if (!score.accuracy) return std::nullopt;
+    return score.accuracy->accurate();
+}
+
+std::optional<py::array_t<float>> lateral_error_m(const SceneScore& score) {
+    if (!score.centre_line_error) return std::nullopt;
+    const std::vector<float>& values = score.centre_line_error->lateral_m;
+    return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+std::optional<double> heading_error_rad(const SceneScore& score) {
+    if (!score.centre_line_error) return std::nullopt;
+    return score.centre_line_error->heading_rad;
+}
+
+constexpr const char* kScore =
+    R"(score(scene: Scene, lane: Lane, boundaries: Optional[Boundaries] = None) -> Score
+
+Compares a lane with the true one. The measures are defined in docs/measures.md.
+
+scene: With a ground truth, or of a run whose boundaries have the driven path.
+lane: Of this scene: cones are compared by their ids.
+boundaries: Of the whole course. Without them divergence is unknown.
+Raises ValueError if the scene has no ground truth with two cones on each side, or if the lane names a cone that the scene
+    does not have.
+
+>>> import conelane
+>>> track = conelane.load_tracks("generated:circle")[0]
+>>> scene = conelane.generate_scenes(track, every_m=20.0)[0]
+>>> result = conelane.score(scene, conelane.Detector("front").detect_scene(scene), track.boundaries)
+>>> result.usable, result.category
+(True, 'ground_truth')
+)";
+
+void add_score(py::module_& module) {
+    Class<SceneScore>(module, "Score", "What one lane is worth, by the measures of both papers.")
+        .get("usable", "Optional[bool]: whether a car can drive by the lane; None without boundaries",
+             &SceneScore::usable)
+        .get(
+            "category",
+            R"(str: "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short" or "near_ground_truth")",
+            &SceneScore::category, kName)
+        .get("success", "bool: any category but none and diverging_below_20", &SceneScore::success)
+        .get("accurate", "Optional[bool]: passes the four checks of the RLD paper; None if they do not apply",
+             accurate)
+        .get("error", "bool: the method failed", &SceneScore::error)
+        .get("iou", "Optional[float]: intersection over union with the true lane, in [0, 1]",
+             &SceneScore::iou)
+        .get("lane_length_m", "float: of the lane [m]", &SceneScore::lane_length_m)
+        .get("ground_truth_length_m", "float: of the true lane [m]", &SceneScore::ground_truth_length_m)
+        .get("divergence_distance_m",
+             "Optional[float]: distance at which the lane leaves the course [m]; None if it does not",
+             &SceneScore::divergence_distance_m)
+        .get("lateral_error_m",
+             "Optional[NDArray[float32]]: (K,), lateral error of the centre line every 0.5 m [m]; for usable "
+             "lanes",
+             lateral_error_m)
+        .get("heading_error_rad",
+             "Optional[float]: heading error of the centre line 10 m ahead [rad]; for usable lanes",
+             heading_error_rad)
+        .repr([](const SceneScore& s) { return fmt::format("<conelane.Score {}>", to_string(s.category)); });
+
+    add_function(module, kScore, score);
 }
 
 }  // namespace
 
 void add_lanes(py::module_& module) {
     add_drivable_lane(module);
-    py::class_<LaneObject> lane(module, "Lane", R"(The answer of a detector. Every attribute is a copy.)");
-    add_geometry(lane);
-    add_answer(lane);
-
-    module.def("read_lanes", read_lanes, py::arg("file"), py::arg("scenes"), R"(read_lanes(file, scenes)
-
-Lanes of a `*.lanes.jsonl` file.
-
-Parameters
-----------
-file : str or os.PathLike
-scenes : sequence of Scene
-    The scenes of the lanes, found by id.
-
-Returns
--------
-list of Lane
-
-Raises
-------
-ValueError
-    Naming file, line and key.
-)");
-    module.def("write_lanes", write_lanes, py::arg("file"), py::arg("lanes"), R"(write_lanes(file, lanes)
-
-Writes a `*.lanes.jsonl` file. If that fails, an old file stays unchanged.
-
-Parameters
-----------
-file : str or os.PathLike
-lanes : sequence of Lane
-
-Examples
---------
->>> import conelane, os, tempfile
->>> scenes = conelane.generate_scenes(conelane.load_tracks("generated:circle")[0], every_m=20.0)
->>> detector = conelane.Detector("front")
->>> lanes = [detector.detect_scene(scene) for scene in scenes]
->>> with tempfile.TemporaryDirectory() as folder:
-...     file = os.path.join(folder, "circle.lanes.jsonl")
-...     conelane.write_lanes(file, lanes)
-...     again = conelane.read_lanes(file, scenes)
->>> [a.left.tolist() for a in again] == [a.left.tolist() for a in lanes]
-True
-)");
+    Class<LaneObject> lane(module, "Lane", "The answer of a detector. Every attribute is a copy.");
+    add_boundaries(lane);
+    add_answer(lane, &LaneObject::record, &LaneRecord::answer);
+    add_record(lane);
+    add_answer_of_plan(module);
+    add_function(module, kReadLanes, read_lanes);
+    add_function(module, kWriteLanes, write_lanes);
+    add_score(module);
 }
 
 }  // namespace conelane::python

@@ -6,6 +6,32 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <string_view>
+#include <utility>
+
+#include <pybind11/eval.h>
+
+namespace conelane::python {
+
+Signature::Signature(std::string_view doc) : name(doc.substr(0, doc.find('('))) {
+    const std::string signature(doc.substr(0, doc.find("\n\n")));
+    py::dict names;
+    py::exec("from __future__ import annotations\ndef " + signature + ": pass", names);  // types stay text
+    const py::module_ inspect = py::module_::import("inspect");
+    const py::object empty = inspect.attr("Parameter").attr("empty");
+    const py::object parameters = inspect.attr("signature")(names[name.c_str()]).attr("parameters");
+    bool has_keywords_alone = false;
+    for (const py::handle parameter : parameters.attr("values")()) {
+        const std::string kind = py::str(parameter.attr("kind").attr("name"));
+        if (kind == "VAR_KEYWORD") break;
+        if (kind == "KEYWORD_ONLY" && !std::exchange(has_keywords_alone, true))
+            arguments.push_back({"*", {}});
+        const py::object value = parameter.attr("default");
+        arguments.push_back({py::str(parameter.attr("name")), value.is(empty) ? py::object() : value});
+    }
+}
+
+}  // namespace conelane::python
 
 namespace py = pybind11;
 
@@ -38,7 +64,5 @@ PYBIND11_MODULE(_core, module) {
     conelane::python::add_scenes(module);
     conelane::python::add_lanes(module);
     conelane::python::add_detector(module);
-    conelane::python::add_planner(module);
     conelane::python::add_rld(module);
-    conelane::python::add_scoring(module);
 }

@@ -2,16 +2,14 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
-#include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -20,8 +18,7 @@ namespace conelane::python {
 namespace {
 
 /// A solved scene and its lane, which is empty if there is none.
-struct SolutionObject {
-    RldReport report;
+struct SolutionObject : RldReport {
     double total_ms = 0.0;
     std::vector<Cone> cones;
     Lane lane;
@@ -46,35 +43,26 @@ SolutionObject solve_rld(const py::object& cones, const py::object& pose, const 
     RldParameters chosen = rld_parameters(parameters).value_or(RldParameters{});
     if (pairing) chosen.pairing = pairing_of(*pairing);
     const RldSolverEntry& entry = find_solver(solver_name);
-    const SolveLimits limits{time_limit_ms.value_or(std::numeric_limits<double>::infinity()), absolute_gap};
+    const SolveLimits limits{limit_of(time_limit_ms), absolute_gap};
     if (const std::string_view fault = invalidity(limits); !fault.empty())
         throw InvalidInput("limits", std::string(fault));
     validate(scene);
     validate(chosen);
     const py::gil_scoped_release unlocked;
-    SolutionObject solution;
     SolvedScene solved = solve_scene(*entry.make(Formulation::tight), scene, chosen, {.limits = limits});
-    if (solved.report.lane_graph) {
-        if (auto lane = to_lane(*solved.report.lane_graph, scene)) solution.lane = std::move(*lane);
-    }
-    solution.report = std::move(solved.report);
-    solution.total_ms = solved.total_ms;
-    solution.cones = std::move(scene.cones);
-    return solution;
+    std::optional<Lane> lane;
+    if (solved.report.lane_graph) lane = to_lane(*solved.report.lane_graph, scene);
+    return {std::move(solved.report), solved.total_ms, std::move(scene.cones),
+            std::move(lane).value_or(Lane{})};
 }
 
 Indices edges(const SolutionObject& solution) {
-    const auto count =
-        static_cast<py::ssize_t>(solution.report.lane_graph ? solution.report.lane_graph->edges.size() : 0);
-    Indices rows({count, py::ssize_t{2}});
-    std::int64_t* out = rows.mutable_data();
-    if (solution.report.lane_graph) {
-        for (const Edge& edge : solution.report.lane_graph->edges) {
-            *out++ = static_cast<std::int64_t>(edge.i);
-            *out++ = static_cast<std::int64_t>(edge.j);
-        }
+    std::vector<std::int64_t> ends;
+    for (const Edge& edge : solution.lane_graph ? solution.lane_graph->edges : std::vector<Edge>{}) {
+        ends.push_back(static_cast<std::int64_t>(edge.i));
+        ends.push_back(static_cast<std::int64_t>(edge.j));
     }
-    return rows;
+    return array(ends).reshape({static_cast<py::ssize_t>(ends.size() / 2), py::ssize_t{2}});
 }
 
 py::dict parameters_as_dict(const std::string& name) {
@@ -90,86 +78,22 @@ py::dict parameters_as_dict(const std::string& name) {
     return all;
 }
 
-void add_solution(py::module_& module) {
-    py::class_<SolutionObject>(module, "RldSolution", "What `solve_rld` found. Every attribute is a copy.")
-        .def_property_readonly(
-            "status", [](const SolutionObject& s) { return to_string(s.report.status); },
-            R"(str: "optimal", "feasible" (a limit ended the proof), "infeasible" (by proof), "stopped" (a limit
-ended the search before any lane graph) or "error")")
-        .def_property_readonly(
-            "stopped_by",
-            [](const SolutionObject& s) -> std::optional<std::string_view> {
-                if (!s.report.stopped_by) return std::nullopt;
-                return to_string(*s.report.stopped_by);
-            },
-            R"(str or None: the limit that ended the search: "time", "memory" or "iterations")")
-        .def_property_readonly("edges", edges,
-                               "(K, 2) ndarray of int64: the lane graph, as indices into the cones")
-        .def_property_readonly(
-            "objective", [](const SolutionObject& s) { return s.report.objective; },
-            "float or None: cost of the lane graph")
-        .def_property_readonly(
-            "bound", [](const SolutionObject& s) { return s.report.bound; },
-            "float or None: proven lower bound of the least cost")
-        .def_property_readonly(
-            "nodes", [](const SolutionObject& s) { return s.report.nodes; }, "int: of the search tree")
-        .def_property_readonly(
-            "total_ms", [](const SolutionObject& s) { return s.total_ms; }, "float: wall clock [ms]")
-        .def_property_readonly(
-            "message", [](const SolutionObject& s) { return s.report.message; }, "str: of an error")
-        .def_property_readonly(
-            "left", [](const SolutionObject& s) { return array(indices_of(s.lane.left, s.cones, "left")); },
-            "(L,) ndarray of int64: left boundary from the car outward, as indices into the cones")
-        .def_property_readonly(
-            "right",
-            [](const SolutionObject& s) { return array(indices_of(s.lane.right, s.cones, "right")); },
-            "(R,) ndarray of int64: right boundary")
-        .def("__repr__", [](const SolutionObject& s) {
-            const std::string reason =
-                s.report.stopped_by ? fmt::format(", stopped by {}", to_string(*s.report.stopped_by)) : "";
-            return fmt::format("<conelane.RldSolution {}{}>", to_string(s.report.status), reason);
-        });
-}
-
-}  // namespace
-
-void add_rld(py::module_& module) {
-    add_solution(module);
-    module.def(
-        "solve_rld", solve_rld, py::arg("cones"), py::arg("pose"), py::arg("ids") = py::none(),
-        py::arg("colors") = py::none(), py::arg("confidences") = py::none(), py::kw_only(),
-        py::arg("parameters") = py::none(), py::arg("pairing") = py::none(), py::arg("solver") = "path-pair",
-        py::arg("time_limit_ms") = py::none(), py::arg("absolute_gap") = 1e-9,
-        R"(solve_rld(cones, pose, ids=None, colors=None, confidences=None, *, parameters=None, pairing=None, solver='path-pair', time_limit_ms=None, absolute_gap=1e-09)
+constexpr const char* kSolveRld =
+    R"(solve_rld(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None,
+          confidences: Optional[ArrayLike] = None, *, parameters: Optional[Union[str, Mapping[str, Any]]] = None,
+          pairing: Optional[str] = None, solver: str = 'path-pair', time_limit_ms: Optional[float] = None,
+          absolute_gap: float = 1e-09) -> RldSolution
 
 The lane graph of least cost: RLD, solved to its proven optimum.
 
-Parameters
-----------
-cones, pose, ids, colors, confidences
-    As `Detector.detect` takes them.
-parameters : str or dict, optional
-    Name of a parameter set, or a dict of the values that differ from the defaults; see `rld_parameters`.
-pairing : str, optional
-    "near_far" or "paper", instead of the parameters'.
-solver : str
-    "path-pair", or "exhaustive" for at most 9 cones; both are exact.
-time_limit_ms : float or None
-    Wall clock [ms]; None for no limit.
-absolute_gap : float
-    A lane graph whose cost is this close to the bound counts as optimal.
+cones, pose, ids, colors, confidences: As `Detector.detect` takes them.
+parameters: Name of a parameter set, or a dict of the values that differ from the defaults; see `rld_parameters`.
+pairing: "near_far" or "paper", instead of the parameters'.
+solver: "path-pair", or "exhaustive" for at most 9 cones; both are exact.
+time_limit_ms: Wall clock [ms]; None for no limit.
+absolute_gap: A lane graph whose cost is this close to the bound counts as optimal.
+Raises ValueError as `Detector.detect`, and for unknown names and parameters out of range.
 
-Returns
--------
-RldSolution
-
-Raises
-------
-ValueError
-    As `Detector.detect`, and for unknown names and parameters out of range.
-
-Examples
---------
 >>> import conelane
 >>> cones = [[1, -1.5], [1, 1.5], [4, -1.5], [4, 1.5], [7, -1.5], [7, 1.5]]
 >>> solution = conelane.solve_rld(cones, (0, 0, 0))
@@ -179,24 +103,15 @@ Examples
 [[0, 2], [1, 3], [2, 4], [3, 5]]
 >>> round(solution.objective, 3), round(solution.bound, 3)
 (-4.0, -4.0)
-)");
-    module.def("rld_parameters", parameters_as_dict, py::arg("name") = "default",
-               R"(rld_parameters(name='default')
+)";
+
+constexpr const char* kRldParameters = R"(rld_parameters(name: str = 'default') -> Dict[str, Any]
 
 Parameters of the RLD model.
 
-Parameters
-----------
-name : str
-    "default" or one of the tuned sets; an unknown name lists them.
+name: "default" or one of the tuned sets; an unknown name lists them.
+Returns lengths in metres, angles in radians.
 
-Returns
--------
-dict of str to float, str or bool
-    Lengths in metres, angles in radians.
-
-Examples
---------
 >>> import conelane
 >>> conelane.rld_parameters()["d_max"]
 6.5
@@ -204,7 +119,37 @@ Examples
 Traceback (most recent call last):
     ...
 ValueError: parameters: there is no set 'tuned', only default, n12, context, shape, full, learned
-)");
+)";
+
+}  // namespace
+
+void add_rld(py::module_& module) {
+    Class<SolutionObject>(module, "RldSolution", "What `solve_rld` found. Every attribute is a copy.")
+        .get(
+            "status",
+            R"(str: "optimal", "feasible" (a limit ended the proof), "infeasible" (by proof), "stopped" (a limit ended the search
+before any lane graph) or "error")",
+            &SolutionObject::status, kName)
+        .get("stopped_by",
+             R"(Optional[str]: the limit that ended the search: "time", "memory" or "iterations")",
+             &SolutionObject::stopped_by, kName)
+        .get("edges", "NDArray[int64]: (K, 2), the lane graph, as indices into the cones", edges)
+        .get("objective", "Optional[float]: cost of the lane graph", &RldReport::objective)
+        .get("bound", "Optional[float]: proven lower bound of the least cost", &RldReport::bound)
+        .get("nodes", "int: of the search tree", &RldReport::nodes)
+        .get("total_ms", "float: wall clock [ms]", &SolutionObject::total_ms)
+        .get("message", "str: of an error", &RldReport::message)
+        .get("left", "NDArray[int64]: (L,), left boundary from the car outward, as indices into the cones",
+             [](const SolutionObject& s) { return array(indices_of(s.lane.left, s.cones, "left")); })
+        .get("right", "NDArray[int64]: (R,), right boundary",
+             [](const SolutionObject& s) { return array(indices_of(s.lane.right, s.cones, "right")); })
+        .repr([](const SolutionObject& s) {
+            const std::string reason =
+                s.stopped_by ? fmt::format(", stopped by {}", to_string(*s.stopped_by)) : "";
+            return fmt::format("<conelane.RldSolution {}{}>", to_string(s.status), reason);
+        });
+    add_function(module, kSolveRld, solve_rld);
+    add_function(module, kRldParameters, parameters_as_dict);
 }
 
 }  // namespace conelane::python

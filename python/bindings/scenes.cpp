@@ -2,7 +2,6 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/world/scene_generation.hpp"
-#include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>
@@ -56,11 +55,11 @@ void write_scenes(const std::filesystem::path& file, const std::vector<SceneObje
     conelane::write_scenes(file, all);
 }
 
-std::vector<std::shared_ptr<AnnotatedScene>> generate_scenes(const Track& track, double false_positive_rate,
-                                                             double range_m, double every_m,
-                                                             const std::optional<std::string>& condition,
-                                                             bool with_color, std::uint64_t seed,
-                                                             std::optional<double> noise_by_range) {
+std::vector<std::shared_ptr<AnnotatedScene>> scenes_along(const Track& track, double false_positive_rate,
+                                                          double range_m, double every_m,
+                                                          const std::optional<std::string>& condition,
+                                                          bool with_color, std::uint64_t seed,
+                                                          std::optional<double> noise_by_range) {
     SceneOptions options;
     options.false_positive_rates = {false_positive_rate};
     options.ranges_m = {range_m};
@@ -79,115 +78,53 @@ Indices track_indices(const std::vector<std::size_t>& indices) {
     return array(values);
 }
 
-void add_scene(py::module_& module) {
-    py::class_<AnnotatedScene, std::shared_ptr<AnnotatedScene>> scene(
-        module, "Scene",
-        R"(Scene(cones, pose, ids=None, colors=None, confidences=None, *, id='', ground_truth=None, closed=False, track='', covariances=None)
+std::vector<Track> load_tracks_warning(const std::string& spec) {
+    std::vector<Track> tracks;
+    {
+        const py::gil_scoped_release release;
+        tracks = load_tracks(spec);
+    }
+    for (const Track& track : tracks) {
+        for (const std::string& warning : track.warnings) {
+            const std::string text = track.name + ": " + warning;
+            if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+        }
+    }
+    return tracks;
+}
+
+constexpr const char* kScene =
+    R"(Scene(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None,
+      confidences: Optional[ArrayLike] = None, *, id: str = '',
+      ground_truth: Optional[Tuple[ArrayLike, ArrayLike]] = None, closed: bool = False, track: str = '',
+      covariances: Optional[ArrayLike] = None)
 
 The input of one call of a detector, and the truth for scoring. Every attribute is a copy.
 
-Parameters
-----------
-cones, pose, ids, colors, confidences, covariances
-    As `Detector.detect` takes them.
-id : str
-    Id of the scene.
-ground_truth : tuple of two (K,) array_like of int, optional
-    The true left and right boundary from the car outward, as indices into `cones`.
-closed : bool
-    Whether that is a whole circuit.
-track : str
-    Name of its course.
+cones, pose, ids, colors, confidences, covariances: As `Detector.detect` takes them.
+id: Id of the scene.
+ground_truth: The true left and right boundary from the car outward, as indices into `cones`.
+closed: Whether that is a whole circuit.
+track: Name of its course.
 
-Examples
---------
 >>> import conelane
 >>> scene = conelane.Scene([[0, 1.5], [0, -1.5], [4, 1.5], [4, -1.5]], (0, 0, 0), ground_truth=([0, 2], [1, 3]), id="start")
 >>> scene
 <conelane.Scene 'start': 4 cones>
-)");
-    scene
-        .def(py::init(&make_scene), py::arg("cones"), py::arg("pose"), py::arg("ids") = py::none(),
-             py::arg("colors") = py::none(), py::arg("confidences") = py::none(), py::kw_only(),
-             py::arg("id") = "", py::arg("ground_truth") = py::none(), py::arg("closed") = false,
-             py::arg("track") = "", py::arg("covariances") = py::none())
-        .def_property_readonly(
-            "id", [](const AnnotatedScene& s) { return s.scene.id; }, "str")
-        .def_property_readonly(
-            "pose", [](const AnnotatedScene& s) { return array(s.scene.pose); },
-            "(3,) ndarray of float64: x, y [m] and yaw [rad]")
-        .def_property_readonly(
-            "cones", [](const AnnotatedScene& s) { return positions(s.scene.cones); },
-            "(N, 2) ndarray of float64: positions [m]")
-        .def_property_readonly(
-            "ids", [](const AnnotatedScene& s) { return python::ids(s.scene.cones); },
-            "(N,) ndarray of int64")
-        .def_property_readonly(
-            "colors", [](const AnnotatedScene& s) { return python::colors(s.scene.cones); },
-            "(N,) ndarray of uint8: codes, see `Color`")
-        .def_property_readonly(
-            "color_probabilities",
-            [](const AnnotatedScene& s) { return python::color_probabilities(s.scene.cones); },
-            "(N, 5) ndarray of float64: probabilities of unknown, blue, yellow, orange, big orange; 1 and 0 "
-            "for a label")
-        .def_property_readonly(
-            "confidences", [](const AnnotatedScene& s) { return python::confidences(s.scene.cones); },
-            "(N,) ndarray of float64")
-        .def_property_readonly(
-            "covariances", [](const AnnotatedScene& s) { return python::covariances(s.scene.cones); },
-            "(N, 2, 2) ndarray of float64, or None where no cone has one: of the positions [m^2]; 0 for a "
-            "cone "
-            "without one")
-        .def_property_readonly(
-            "ground_truth", ground_truth,
-            "tuple of two (K,) ndarray of int64, or None: left and right, as indices into `cones`")
-        .def_property_readonly(
-            "closed", [](const AnnotatedScene& s) { return s.ground_truth && s.ground_truth->closed; },
-            "bool: whether the ground truth is a whole circuit")
-        .def_property_readonly(
-            "track", [](const AnnotatedScene& s) { return s.track; }, "str")
-        .def_property_readonly(
-            "condition", [](const AnnotatedScene& s) { return s.condition; }, "str")
-        .def_property_readonly(
-            "false_positive_rate", [](const AnnotatedScene& s) { return s.false_positive_rate; },
-            "float or None")
-        .def_property_readonly(
-            "range_m", [](const AnnotatedScene& s) { return s.range_m; },
-            "float or None: how far the car sees [m]")
-        .def("__repr__", [](const AnnotatedScene& s) {
-            return fmt::format("<conelane.Scene '{}': {} cones>", s.scene.id, s.scene.cones.size());
-        });
+)";
 
-    module.def(
-        "read_scenes", [](const std::filesystem::path& file) { return shared(read_scenes(file)); },
-        py::arg("file"), R"(read_scenes(file)
+constexpr const char* kReadScenes =
+    R"(read_scenes(file: Union[str, "PathLike[str]"]) -> List[Scene]
 
 Scenes of a `*.scenes.jsonl` file. A scene without an id gets its line number.
+Raises ValueError, naming file, line and key.
+)";
 
-Parameters
-----------
-file : str or os.PathLike
-
-Returns
--------
-list of Scene
-
-Raises
-------
-ValueError
-    Naming file, line and key.
-)");
-    module.def("write_scenes", write_scenes, py::arg("file"), py::arg("scenes"), R"(write_scenes(file, scenes)
+constexpr const char* kWriteScenes =
+    R"(write_scenes(file: Union[str, "PathLike[str]"], scenes: Sequence[Scene]) -> None
 
 Writes a `*.scenes.jsonl` file. If that fails, an old file stays unchanged.
 
-Parameters
-----------
-file : str or os.PathLike
-scenes : sequence of Scene
-
-Examples
---------
 >>> import conelane, os, tempfile
 >>> scene = conelane.Scene([[0, 1.5], [0, -1.5]], pose=(0, 0, 0.1), id="start")
 >>> with tempfile.TemporaryDirectory() as folder:
@@ -195,197 +132,138 @@ Examples
 ...     conelane.write_scenes(file, [scene])
 ...     conelane.read_scenes(file)
 [<conelane.Scene 'start': 2 cones>]
-)");
-}
+)";
 
-void add_boundaries(py::module_& module) {
-    py::class_<TrackBoundaries>(module, "Boundaries", R"(Boundaries(left, right, closed=True)
+constexpr const char* kBoundaries =
+    R"(Boundaries(left: ArrayLike, right: ArrayLike, closed: bool = True)
 
 The whole annotated boundaries of a course in driving order, from which divergence is measured.
 
-Parameters
-----------
-left, right : (K, 2) array_like of float
-    Positions [m].
-closed : bool
-    Whether the course is a circuit.
-)")
-        .def(py::init([](const py::object& left, const py::object& right, bool closed) {
-                 return TrackBoundaries{points(left, "left"), points(right, "right"), closed};
-             }),
-             py::arg("left"), py::arg("right"), py::arg("closed") = true)
-        .def_property_readonly(
-            "left", [](const TrackBoundaries& b) { return array(b.left); }, "(K, 2) ndarray of float64 [m]")
-        .def_property_readonly(
-            "right", [](const TrackBoundaries& b) { return array(b.right); }, "(K, 2) ndarray of float64 [m]")
-        .def_property_readonly(
-            "closed", [](const TrackBoundaries& b) { return b.closed; }, "bool")
-        .def_property_readonly(
-            "driven", [](const TrackBoundaries& b) { return array(b.driven); },
-            "(K, 2) ndarray of float64: the driven path [m] of a run without boundaries");
+left, right: (K, 2), positions [m].
+closed: Whether the course is a circuit.
+)";
 
-    module.def("read_boundaries", read_track_boundaries, py::arg("file"),
-               R"(read_boundaries(file)
+constexpr const char* kReadBoundaries =
+    R"(read_boundaries(file: Union[str, "PathLike[str]"]) -> Dict[str, Boundaries]
 
 Boundaries of the courses of a scenes file, from the `*.tracks.json` file beside it.
+Returns by the name of the track.
+Raises ValueError, naming file and key.
+)";
 
-Parameters
-----------
-file : str or os.PathLike
-
-Returns
--------
-dict of str to Boundaries
-    By the name of the track.
-
-Raises
-------
-ValueError
-    Naming file and key.
-)");
-    module.def("write_boundaries", write_track_boundaries, py::arg("file"), py::arg("boundaries"),
-               R"(write_boundaries(file, boundaries)
+constexpr const char* kWriteBoundaries =
+    R"(write_boundaries(file: Union[str, "PathLike[str]"], boundaries: Dict[str, Boundaries]) -> None
 
 Writes a `*.tracks.json` file. If that fails, an old file stays unchanged.
+)";
 
-Parameters
-----------
-file : str or os.PathLike
-boundaries : dict of str to Boundaries
-
-Examples
---------
->>> import conelane, os, tempfile
->>> track = conelane.load_tracks("generated:circle")[0]
->>> with tempfile.TemporaryDirectory() as folder:
-...     file = os.path.join(folder, "circle.tracks.json")
-...     conelane.write_boundaries(file, {track.name: track.boundaries})
-...     len(conelane.read_boundaries(file)[track.name].left) == len(track.left)
-True
-)");
-}
-
-void add_track(py::module_& module) {
-    py::class_<Track>(module, "Track", "A map of cones with annotated boundaries. Every attribute is a copy.")
-        .def_property_readonly(
-            "name", [](const Track& t) { return t.name; }, "str: such as \"fsd_1\"")
-        .def_property_readonly(
-            "cones", [](const Track& t) { return positions(t.cones); },
-            "(N, 2) ndarray of float64: positions [m]")
-        .def_property_readonly(
-            "ids", [](const Track& t) { return python::ids(t.cones); }, "(N,) ndarray of int64")
-        .def_property_readonly(
-            "colors", [](const Track& t) { return python::colors(t.cones); },
-            "(N,) ndarray of uint8: codes, see `Color`")
-        .def_property_readonly(
-            "left", [](const Track& t) { return track_indices(t.left); },
-            "(K,) ndarray of int64: the left boundary in driving order, as indices into `cones`")
-        .def_property_readonly(
-            "right", [](const Track& t) { return track_indices(t.right); },
-            "(K,) ndarray of int64: the right boundary")
-        .def_property_readonly(
-            "closed", [](const Track& t) { return t.closed; }, "bool: a circuit")
-        .def_property_readonly(
-            "warnings", [](const Track& t) { return t.warnings; },
-            "list of str: facts about the recording that a user should know")
-        .def_property_readonly(
-            "boundaries",
-            [](const Track& t) {
-                TrackBoundaries all = boundaries(t);
-                if (all.driven.empty()) all.driven = t.driven;
-                return all;
-            },
-            "Boundaries")
-        .def("__repr__", [](const Track& t) {
-            return fmt::format("<conelane.Track '{}': {} cones>", t.name, t.cones.size());
-        });
-
-    module.def(
-        "load_tracks",
-        [](const std::string& spec) {
-            std::vector<Track> tracks;
-            {
-                const py::gil_scoped_release release;
-                tracks = load_tracks(spec);
-            }
-            for (const Track& track : tracks) {
-                for (const std::string& warning : track.warnings) {
-                    const std::string text = track.name + ": " + warning;
-                    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
-                }
-            }
-            return tracks;
-        },
-        py::arg("spec"), R"(load_tracks(spec)
+constexpr const char* kLoadTracks =
+    R"(load_tracks(spec: str) -> List[Track]
 
 Tracks from files of several formats, or generated ones.
 
-Parameters
-----------
-spec : str
-    "generated:NAME" (straight, circle, ...), "fsd:DIR" or "fsd:DIR:1,2", "pacsim:FILE", "eufs:FILE",
-    "ftlog:FILE", a run of ft-fsd. A folder instead of the file stands for all its files.
+spec: "generated:NAME" (straight, circle, ...), "fsd:DIR" or "fsd:DIR:1,2", "pacsim:FILE", "eufs:FILE", "ftlog:FILE",
+    a run of ft-fsd. A folder instead of the file stands for all its files.
+Raises ValueError, naming the file, or the spec.
+Warns (UserWarning) for each of the `warnings` of a track.
 
-Returns
--------
-list of Track
-
-Raises
-------
-ValueError
-    Naming the file, or the spec.
-
-Warns
------
-UserWarning
-    For each of the `warnings` of a track.
-
-Examples
---------
 >>> import conelane
 >>> conelane.load_tracks("generated:straight")
 [<conelane.Track 'straight': 126 cones>]
-)");
-    module.def(
-        "generate_scenes", generate_scenes, py::arg("track"), py::kw_only(),
-        py::arg("false_positive_rate") = 0.0, py::arg("range_m") = 30.0, py::arg("every_m") = 1.1,
-        py::arg("condition") = py::none(), py::arg("with_color") = false, py::arg("seed") = 0,
-        py::arg("noise_by_range") = py::none(),
-        R"(generate_scenes(track, *, false_positive_rate=0.0, range_m=30.0, every_m=1.1, condition=None, with_color=False, seed=0, noise_by_range=None)
+)";
+
+constexpr const char* kGenerateScenes =
+    R"(generate_scenes(track: Track, *, false_positive_rate: float = 0.0, range_m: float = 30.0, every_m: float = 1.1,
+                condition: Optional[str] = None, with_color: bool = False, seed: int = 0,
+                noise_by_range: Optional[float] = None) -> List[Scene]
 
 What a car sees along a track, with the true lane.
 
-Parameters
-----------
-track : Track
-false_positive_rate : float
-    Share of false cones among all points of a scene, in [0, 0.99].
-range_m : float
-    Radius of the half disc ahead that is visible [m].
-every_m : float
-    Travel from scene to scene [m].
-condition : str, optional
-    "paper", "car" or "harsh": noise, missed cones, and false ones that stay where they are.
-with_color : bool
-    Whether cones show the colours of the track.
-seed : int
-    The same seed gives the same scenes.
-noise_by_range : float, optional
-    Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise of the
-    condition. Above 0 the scenes have `covariances`.
+false_positive_rate: Share of false cones among all points of a scene, in [0, 0.99].
+range_m: Radius of the half disc ahead that is visible [m].
+every_m: Travel from scene to scene [m].
+condition: "paper", "car" or "harsh": noise, missed cones, and false ones that stay where they are.
+with_color: Whether cones show the colours of the track.
+seed: The same seed gives the same scenes.
+noise_by_range: Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise
+    of the condition. Above 0 the scenes have `covariances`.
 
-Returns
--------
-list of Scene
-
-Examples
---------
 >>> import conelane
 >>> track = conelane.load_tracks("generated:circle")[0]
 >>> scenes = conelane.generate_scenes(track, false_positive_rate=0.3, every_m=20.0)
 >>> scenes[0].track
 'circle'
-)");
+)";
+
+void add_scene(py::module_& module) {
+    Class<AnnotatedScene, std::shared_ptr<AnnotatedScene>>(module, "Scene", kScene)
+        .init(make_scene)
+        .get("id", "str: of the scene", &AnnotatedScene::scene, &Scene::id)
+        .get("pose", "NDArray[float64]: (3,), x, y [m] and yaw [rad]", &AnnotatedScene::scene, &Scene::pose,
+             kArray)
+        .cones(&AnnotatedScene::scene, &Scene::cones)
+        .get("color_probabilities",
+             "NDArray[float64]: (N, 5), probabilities of unknown, blue, yellow, orange, big orange; 1 and 0 "
+             "for a label",
+             &AnnotatedScene::scene, &Scene::cones, python::color_probabilities)
+        .get("confidences", "NDArray[float64]: (N,), of the detections", &AnnotatedScene::scene,
+             &Scene::cones, python::confidences)
+        .get("covariances",
+             "Optional[NDArray[float64]]: (N, 2, 2), of the positions [m^2]; 0 for a cone without one, None "
+             "where no cone has one",
+             &AnnotatedScene::scene, &Scene::cones, python::covariances)
+        .get("ground_truth",
+             "Optional[Tuple[NDArray[int64], NDArray[int64]]]: left and right, as indices into `cones`",
+             ground_truth)
+        .get("closed", "bool: whether the ground truth is a whole circuit",
+             [](const AnnotatedScene& s) { return s.ground_truth && s.ground_truth->closed; })
+        .get("track", "str: its name", &AnnotatedScene::track)
+        .get("condition", "str: its name", &AnnotatedScene::condition)
+        .get("false_positive_rate", "Optional[float]: share of all points",
+             &AnnotatedScene::false_positive_rate)
+        .get("range_m", "Optional[float]: how far the car sees [m]", &AnnotatedScene::range_m)
+        .repr([](const AnnotatedScene& s) {
+            return fmt::format("<conelane.Scene '{}': {} cones>", s.scene.id, s.scene.cones.size());
+        });
+    add_function(module, kReadScenes,
+                 [](const std::filesystem::path& file) { return shared(read_scenes(file)); });
+    add_function(module, kWriteScenes, write_scenes);
+}
+
+void add_boundaries(py::module_& module) {
+    Class<TrackBoundaries>(module, "Boundaries", kBoundaries)
+        .init([](const py::object& left, const py::object& right, bool closed) {
+            return TrackBoundaries{points(left, "left"), points(right, "right"), closed};
+        })
+        .get("left", "NDArray[float64]: (K, 2), positions [m]", &TrackBoundaries::left, kArray)
+        .get("right", "NDArray[float64]: (K, 2), positions [m]", &TrackBoundaries::right, kArray)
+        .get("closed", "bool: a circuit", &TrackBoundaries::closed)
+        .get("driven", "NDArray[float64]: (K, 2), the driven path [m] of a run without boundaries",
+             &TrackBoundaries::driven, kArray);
+    add_function(module, kReadBoundaries, read_track_boundaries);
+    add_function(module, kWriteBoundaries, write_track_boundaries);
+}
+
+void add_track(py::module_& module) {
+    Class<Track>(module, "Track", "A map of cones with annotated boundaries. Every attribute is a copy.")
+        .get("name", "str: such as \"fsd_1\"", &Track::name)
+        .cones(&Track::cones)
+        .get("left", "NDArray[int64]: (K,), the left boundary in driving order, as indices into `cones`",
+             &Track::left, track_indices)
+        .get("right", "NDArray[int64]: (K,), the right boundary", &Track::right, track_indices)
+        .get("closed", "bool: a circuit", &Track::closed)
+        .get("warnings", "List[str]: facts about the recording that a user should know", &Track::warnings)
+        .get("boundaries", "Boundaries: of the course",
+             [](const Track& t) {
+                 TrackBoundaries all = boundaries(t);
+                 if (all.driven.empty()) all.driven = t.driven;
+                 return all;
+             })
+        .repr([](const Track& t) {
+            return fmt::format("<conelane.Track '{}': {} cones>", t.name, t.cones.size());
+        });
+    add_function(module, kLoadTracks, load_tracks_warning);
+    add_function(module, kGenerateScenes, scenes_along);
 }
 
 }  // namespace

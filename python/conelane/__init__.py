@@ -11,34 +11,15 @@ input raises a `ValueError`.
 """
 from enum import IntEnum
 
-from ._core import (
-    Answer,
-    Boundaries,
-    Detector,
-    DrivableLane,
-    Lane,
-    Plan,
-    Planner,
-    RldSolution,
-    Scene,
-    Score,
-    Track,
-    generate_scenes,
-    load_tracks,
-    methods,
-    read_boundaries,
-    read_lanes,
-    read_scenes,
-    rld_parameters,
-    score,
-    solve_rld,
-    version,
-    write_boundaries,
-    write_lanes,
-    write_scenes,
-)
+from . import _core
+from ._core import (Answer, Boundaries, Detector, DrivableLane, Lane, Plan, Planner, RldSolution, Scene, Score, Track, generate_scenes,
+                    load_tracks, methods, read_boundaries, read_lanes, read_scenes, rld_parameters, score, solve_rld, write_boundaries,
+                    write_lanes, write_scenes)
+from ._core import version as __version__
 
-__version__ = version
+__all__ = ["Answer", "Boundaries", "Color", "Detector", "DrivableLane", "Lane", "NO_ID", "Plan", "Planner", "RldSolution", "Scene", "Score",
+           "Track", "generate_scenes", "load_tracks", "methods", "read_boundaries", "read_lanes", "read_scenes", "rld_parameters", "score",
+           "solve_rld", "write_boundaries", "write_lanes", "write_scenes"]
 
 NO_ID = -(2**63)  # of a cone that has none, among ids of `Planner.update`
 
@@ -53,36 +34,5 @@ class Color(IntEnum):
     big_orange = 4
 
 
-for _public in (Answer, Boundaries, Detector, DrivableLane, Lane, Plan, Planner, RldSolution, Scene, Score, Track,
-                generate_scenes, load_tracks, methods, read_boundaries, read_lanes, read_scenes, rld_parameters, score,
-                solve_rld, write_boundaries, write_lanes, write_scenes):
-    _public.__module__ = "conelane"
-del _public
-
-__all__ = [
-    "Answer",
-    "Boundaries",
-    "Color",
-    "Detector",
-    "DrivableLane",
-    "Lane",
-    "NO_ID",
-    "Plan",
-    "Planner",
-    "RldSolution",
-    "Scene",
-    "Score",
-    "Track",
-    "generate_scenes",
-    "load_tracks",
-    "methods",
-    "read_boundaries",
-    "read_lanes",
-    "read_scenes",
-    "rld_parameters",
-    "score",
-    "solve_rld",
-    "write_boundaries",
-    "write_lanes",
-    "write_scenes",
-]
+for _name in set(__all__) & set(vars(_core)):
+    globals()[_name].__module__ = "conelane"

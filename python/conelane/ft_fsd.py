@@ -182,50 +182,27 @@ def _absent(names: str, instead: str) -> property:
 class PathPlanner:
     """Path from cones, call by call, with the interface of ft-fsd-path-planning: a thin wrapper around `conelane.Planner`.
 
-    Parameters
-    ----------
-    mission : MissionTypes
-        acceleration, skidpad, autocross and trackdrive are driven to their stop; all others as laps without end.
-    experimental_performance_improvements : bool
-        Without effect.
-    detector : str
-        One of `conelane.methods()`.
-    laps : int, optional
-        Of trackdrive, by default 10, and of autocross, by default 1.
-    path_length_m : float
-        Length of the path [m]; shorter if the lane ends before.
-    points : int
-        M, rows of the path.
-    time_limit_ms : float
-        Of each call [ms].
-    max_path_age : int
-        Number of successive calls without a lane for which the last path is still returned; 0 for none.
-    interval_s : float
-        Time between calls that give no `time_s` [s].
-    frame : {"map", "car"}, optional
-        In which frame cones and pose are given. By default recognised: in the car's frame, the cones move as the car
-        drives while `vehicle_position` stays. Calls in the car's frame are answered each by itself.
+    mission: acceleration, skidpad, autocross and trackdrive are driven to their stop; all others as laps without end.
+    experimental_performance_improvements: Without effect.
+    detector: One of `conelane.methods()`.
+    laps: Of trackdrive, by default 10, and of autocross, by default 1.
+    path_length_m: Length of the path [m]; shorter if the lane ends before.
+    points: M, rows of the path.
+    time_limit_ms: Of each call [ms].
+    max_path_age: Number of successive calls without a lane for which the last path is still returned; 0 for none.
+    interval_s: Time between calls that give no `time_s` [s].
+    frame: In which frame cones and pose are given. By default recognised: in the car's frame, the cones move as the
+        car drives while `vehicle_position` stays. Calls in the car's frame are answered each by itself.
 
-    Attributes
-    ----------
-    path_age : int or None
-        Of the path returned last: 0 where it is of that call's cones, n where its lane was found n calls before; None
-        where there was no path.
-    plan : Plan or None
-        Of the last call: its state, `stop`, `lap`, `phase` and how far it is safe.
-    frame : str
-        "map" or "car": how the last call was answered.
-    mission : MissionTypes
-    relocalization_info : None
-        As of the original in missions of laps. In acceleration and skidpad an `AttributeError`.
+    Its attributes:
+    path_age: Of the path returned last: 0 where it is of that call's cones, n where its lane was found n calls
+        before; None where there was no path.
+    plan: Of the last call: its state, `stop`, `lap`, `phase` and how far it is safe.
+    frame: "map" or "car": how the last call was answered.
+    relocalization_info: As of the original in missions of laps. In acceleration and skidpad an `AttributeError`.
 
-    Raises
-    ------
-    ValueError
-        For an unknown detector or frame, for `laps` of a mission that has none, and for values out of range.
+    Raises ValueError for an unknown detector or frame, for `laps` of a mission that has none, and for values out of range.
 
-    Notes
-    -----
     What differs from ft-fsd-path-planning:
 
     - **No path is an array of no rows**, shape (0, 4): where no lane was found yet, or none for more than
@@ -251,8 +228,6 @@ class PathPlanner:
       refused by an `AttributeError`. `mission` cannot be assigned. There is no `RelocalizationInformation`.
     - Invalid input is a `ValueError`, and the planner is then as it was before.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> from conelane.ft_fsd import ConeTypes, MissionTypes, PathPlanner
     >>> cones = [np.zeros((0, 2)) for _ in ConeTypes]
@@ -335,36 +310,23 @@ class PathPlanner:
     ) -> Union[FloatArray, Intermediate]:
         """Path ahead of the car.
 
-        Parameters
-        ----------
-        cones : sequence of five (N, 2) ndarray of float
-            Positions [m] by `ConeTypes`.
-        vehicle_position : (2,) ndarray of float
-            x, y of the car [m].
-        vehicle_direction : (2,) ndarray of float, or float
-            Along the car, of any length above 0; or its yaw [rad].
-        return_intermediate_results : bool
-            Return all seven results instead of the path alone.
-        time_s : float, optional
-            When the cones were seen, by any clock that never goes back [s]. By default `interval_s` after the last call.
+        cones: Positions [m] by `ConeTypes`.
+        vehicle_position: (2,), x, y of the car [m].
+        vehicle_direction: (2,), along the car, of any length above 0; or its yaw [rad].
+        return_intermediate_results: Return all seven results instead of the path alone.
+        time_s: When the cones were seen, by any clock that never goes back [s]. By default `interval_s` after the
+            last call.
 
-        Returns
-        -------
-        path : (M, 4) ndarray of float
-            s [m], x, y [m], curvature [1/m]. Where no lane is found: what is left of the last path, see `path_age`; of
-            shape (0, 4) where there is no path.
-        sorted_left, sorted_right : (L, 2), (R, 2) ndarray of float
-            Boundaries of this call's lane from the car outward [m]; empty where no lane is found.
-        left_with_virtual, right_with_virtual : (L, 2), (R, 2) ndarray of float
-            The same, since no virtual cones are made up.
-        left_to_right, right_to_left : (L,), (R,) ndarray of int
-            For each cone the nearest one of the other side, -1 where none is within 6.5 m.
+        Returns the path, or all seven:
+        path: (M, 4), s [m], x, y [m], curvature [1/m]. Where no lane is found: what is left of the last path, see
+            `path_age`; of shape (0, 4) where there is no path.
+        sorted_left, sorted_right: Boundaries of this call's lane from the car outward [m]; empty where no lane is
+            found.
+        left_with_virtual, right_with_virtual: The same, since no virtual cones are made up.
+        left_to_right, right_to_left: For each cone the nearest one of the other side, -1 where none is within 6.5 m.
 
-        Raises
-        ------
-        ValueError
-            For wrong shapes and for numbers that are not finite; the planner is then as it was before. For cones in the
-            car's frame where only a map will do.
+        Raises ValueError for wrong shapes and for numbers that are not finite; the planner is then as it was before. For
+            cones in the car's frame where only a map will do.
         """
         places, colors = _merge(cones)
         pose = _pose(vehicle_position, vehicle_direction)

@@ -99,7 +99,7 @@ class CbcMainSession : public MilpSession {
         std::vector<double> activity(rows);
         lp_.getMatrixByRow()->times(report.point.data(), activity.data());
         return detail::drop_invented_point({activity, {lp_.getRowLower(), rows}, {lp_.getRowUpper(), rows}},
-                                           watch_.struck, report);
+                                           watch_.interrupted, report);
     }
 
     static std::string fixed(double value) {
@@ -113,7 +113,7 @@ class CbcMainSession : public MilpSession {
         report.nodes = model.getNodeCount();
         const bool has_point = model.bestSolution() != nullptr;
         if (has_point) report.point.assign(model.bestSolution(), model.bestSolution() + lp_.getNumCols());
-        if (watch_.struck) {
+        if (watch_.interrupted) {
             report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
             report.stopped_by = StopReason::time;
         } else if (model.isProvenOptimal() && has_point) {

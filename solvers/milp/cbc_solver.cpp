@@ -47,7 +47,7 @@ class CbcSession : public MilpSession {
             lp_.initialSolve();
             solved_once_ = true;
         }
-        if (watch_.struck) {
+        if (watch_.interrupted) {
             report.status = SolveStatus::stopped;
             report.stopped_by = StopReason::time;
             return;
@@ -93,8 +93,8 @@ class CbcSession : public MilpSession {
         // CBC treats an interrupted relaxation as infeasible. Its status and its bound are then
         // unreliable.
         report.bound =
-            std::max(*report.bound, watch_.struck ? watch_.bound : model.getBestPossibleObjValue());
-        if (watch_.struck) {
+            std::max(*report.bound, watch_.interrupted ? watch_.bound : model.getBestPossibleObjValue());
+        if (watch_.interrupted) {
             report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
             report.stopped_by = StopReason::time;
         } else if (model.isProvenOptimal()) {

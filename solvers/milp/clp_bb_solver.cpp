@@ -71,8 +71,12 @@ class ClpBranchAndBound : public MilpSession {
                 }
                 if (column >= 0) {
                     const double x = lp_.primalColumnSolution()[column];
-                    path_.push_back({column, lp_.columnLower()[column], lp_.columnUpper()[column],
-                                     std::round(x), true, lp_.objectiveValue()});
+                    path_.push_back({.column = column,
+                                     .lower = lp_.columnLower()[column],
+                                     .upper = lp_.columnUpper()[column],
+                                     .value = std::round(x),
+                                     .other_side_open = true,
+                                     .bound = lp_.objectiveValue()});
                     fix(path_.back());
                     continue;
                 }
@@ -108,13 +112,13 @@ class ClpBranchAndBound : public MilpSession {
 
     /// False if Clp reached no conclusion.
     bool solve_relaxation() {
-        if (watch_.strikes()) return false;
+        if (watch_.must_stop()) return false;
         lp_.dual();
-        if (watch_.struck) return false;
+        if (watch_.interrupted) return false;
         if (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible()) return true;
         lp_.allSlackBasis(true);
         lp_.primal();
-        return !watch_.struck && (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible());
+        return !watch_.interrupted && (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible());
     }
 
     /// The column to branch on; -1 if all are integral.
@@ -145,7 +149,7 @@ class ClpBranchAndBound : public MilpSession {
     /// Every open side belongs to a decision on the path, whose bound holds for it. The current node belongs
     /// to the last decision.
     void stop(MilpReport& report) const {
-        if (!watch_.struck) {
+        if (!watch_.interrupted) {
             report.status = SolveStatus::error;
             report.message = "Clp could not solve a relaxation";
             report.point.clear();

@@ -20,10 +20,10 @@ struct Watch {
     double absolute_gap;
     double cutoff;
     double bound = -std::numeric_limits<double>::infinity();
-    bool struck = false;  ///< the deadline ended the search
+    bool interrupted = false;  ///< the deadline ended the search
 };
 
-void look(glp_tree* tree, void* data) {
+void check_node(glp_tree* tree, void* data) {
     auto& watch = *static_cast<Watch*>(data);
     const int best = glp_ios_best_node(tree);
     if (best != 0) watch.bound = glp_ios_node_bound(tree, best);
@@ -33,7 +33,7 @@ void look(glp_tree* tree, void* data) {
     if (std::min(best_value, watch.cutoff) - watch.bound <= watch.absolute_gap) {
         glp_ios_terminate(tree);
     } else if (watch.deadline.passed()) {
-        watch.struck = true;
+        watch.interrupted = true;
         glp_ios_terminate(tree);
     }
 }
@@ -227,7 +227,7 @@ class GlpkSession : public MilpSession {
         options.msg_lev = GLP_MSG_OFF;
         options.tol_int = 1e-7;
         options.tol_obj = 1e-9;
-        options.cb_func = look;
+        options.cb_func = check_node;
         options.cb_info = &watch;
         const int failure = glp_intopt(problem_, &options);
         const int status = glp_mip_status(problem_);
@@ -247,7 +247,7 @@ class GlpkSession : public MilpSession {
             report.status = has_point ? SolveStatus::optimal : SolveStatus::infeasible;
             if (finished) report.bound = best_value;
             if (!has_point) report.bound.reset();
-        } else if (watch.struck) {
+        } else if (watch.interrupted) {
             report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
             report.stopped_by = StopReason::time;
         } else {

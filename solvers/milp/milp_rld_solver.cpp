@@ -39,9 +39,9 @@ class MilpRldSolver : public RldSolver {
     std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, std::uint64_t seed,
                                       const Deadline& deadline, RldReport& report) {
         if (!model_) model_.emplace(formulation_);
-        if (const auto struck = model_->update(problem, deadline)) {
+        if (const auto stopped_by = model_->update(problem, deadline)) {
             report.status = SolveStatus::stopped;
-            report.stopped_by = struck;
+            report.stopped_by = stopped_by;
             return nullptr;
         }
         return solver_(model_->program(), seed);

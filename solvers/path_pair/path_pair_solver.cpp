@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,16 +26,16 @@ constexpr double kMinGap = 1e-10;
 class PathPairSolver : public RldSolver {
   public:
     explicit PathPairSolver(const PathPairOptions& options)
-        : options_(options), search_(graph_, incumbent_, options_) {}
+        : options_(options), incumbent_(graph_), search_(graph_, system_, incumbent_, options_, clock_) {}
 
     BoundCertificate certify(const LaneGraphProblem& problem, double time_limit_ms) {
-        SearchClock clock{Deadline(time_limit_ms)};
+        clock_.restart(Deadline(time_limit_ms));
         SearchClock no_limit;  // a certificate needs a graph
         graph_.build(problem, no_limit);
-        incumbent_.reset(graph_, 0.0);
+        incumbent_.reset(0.0, kMinGap);
         near_to_far(problem);
         BoundCertificate certificate;
-        certificate.bound = search_.run_root(system_, kMinGap, clock);
+        certificate.bound = search_.run_root();
         const Multipliers& multipliers = search_.root_multipliers();
         certificate.cone_multiplier = multipliers.cone;
         certificate.heading_multiplier = multipliers.heading;
@@ -99,9 +100,9 @@ class PathPairSolver : public RldSolver {
         // exceeds the cost of every lane by more than the tolerance.
         Outcome outcome{};
         for (const double cutoff : {0.0, most + tolerance}) {
-            incumbent_.reset(graph_, cutoff);
+            incumbent_.reset(cutoff, tolerance);
             if (start_is_feasible) offer(problem, *start);
-            outcome = search(problem, tolerance, deadline);
+            outcome = search(problem, deadline);
             ++report.rounds;
             if (incumbent_.found() || !outcome.complete) break;
         }
@@ -179,11 +180,11 @@ class PathPairSolver : public RldSolver {
         }
     }
 
-    Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
+    Outcome search(const LaneGraphProblem& problem, const Deadline& deadline) {
         Outcome outcome{std::numeric_limits<double>::infinity(), true};
         for_each_system(problem, [&](const std::optional<std::size_t>&) {
-            SearchClock clock(deadline, options_.max_work);  // its limit of work is that of one search
-            const Outcome part = search_.run(system_, tolerance, clock);
+            clock_.restart(deadline, options_.max_work);  // the limit of work is that of one search
+            const Outcome part = search_.run();
             outcome.bound = std::min(outcome.bound, part.bound);
             outcome.complete = outcome.complete && part.complete;
         });
@@ -198,13 +199,13 @@ class PathPairSolver : public RldSolver {
         // At least any verifier's upper bound of a lane graph's cost, however it splits the costs.
         const double best_end =
             problem.learned_end_cost.empty() ? 0.0 : std::ranges::min(problem.learned_end_cost);
-        const double most = cost_limit(problem) + 2.0 * (problem.parameters.w_n - best_end) *
+        const double most = cost_limit(problem) + 2.0 * (problem.parameters.near_end_weight - best_end) *
                                                       static_cast<double>(problem.edges.size());
         const double cutoff = std::min(bound, most);
         // The margin makes sure that nothing is dropped here that exact arithmetic keeps.
-        incumbent_.reset(graph_, cutoff + std::max(1e-7, 1e-10 * std::abs(cutoff)));
-        SearchClock clock(deadline);
-        const std::vector<Multipliers> stages = search_.run_root_in_stages(system_, kUnit, clock);
+        incumbent_.reset(cutoff + std::max(1e-7, 1e-10 * std::abs(cutoff)), 0.0);
+        clock_.restart(deadline);
+        const std::vector<Multipliers> stages = search_.run_root_in_stages(kUnit);
         const auto units = [](double multiplier) {
             constexpr auto kMax = static_cast<double>(SearchCertificate::kMaxUnits);
             return std::llround(std::min(multiplier / kUnit, kMax));
@@ -227,28 +228,30 @@ class PathPairSolver : public RldSolver {
     }
 
     [[nodiscard]] std::vector<Edge> clique_edges(const LaneGraphProblem& problem, int clique) const {
+        return edges_of(problem, search_.cliques().edges(clique));
+    }
+
+    [[nodiscard]] LaneGraph lane_graph(const LaneGraphProblem& problem) const {
+        LaneGraph graph{edges_of(problem, incumbent_.edges())};
+        std::ranges::sort(graph.edges);
+        return graph;
+    }
+
+    [[nodiscard]] std::vector<Edge> edges_of(const LaneGraphProblem& problem,
+                                             std::span<const int> of_graph) const {
         std::vector<Edge> edges;
-        for (const int edge : search_.cliques().edges(clique)) {
+        for (const int edge : of_graph) {
             const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
             edges.push_back({e.i, e.j});
         }
         return edges;
     }
 
-    [[nodiscard]] LaneGraph lane_graph(const LaneGraphProblem& problem) const {
-        LaneGraph graph;
-        for (const int edge : incumbent_.edges()) {
-            const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
-            graph.edges.push_back({e.i, e.j});
-        }
-        std::ranges::sort(graph.edges);
-        return graph;
-    }
-
     PathPairOptions options_;
     ArcGraph graph_;
     Incumbent incumbent_;
     LegSystem system_;
+    SearchClock clock_;
     BranchAndBound search_;
 };
 

@@ -21,6 +21,15 @@ class SearchClock {
     SearchClock(const SearchClock&) = delete;
     SearchClock& operator=(const SearchClock&) = delete;
 
+    /// The same clock for another search, with nothing counted.
+    void restart(const Deadline& deadline, std::int64_t max_work = std::numeric_limits<std::int64_t>::max()) {
+        deadline_ = deadline;
+        max_work_ = max_work;
+        work_ = 0;
+        total_work_ = 0;
+        expired_ = false;
+    }
+
     /// Counts `work` steps, also in the total.
     bool out_of_time(std::size_t work) {
         total_work_ += static_cast<std::int64_t>(work);
@@ -28,17 +37,17 @@ class SearchClock {
     }
     /// Counts `work` steps towards the next check of the deadline, but not in the total.
     bool tick(std::size_t work) {
-        constexpr std::size_t kWorkPerLook = 50'000;
+        constexpr std::size_t kWorkPerCheck = 50'000;
         work_ += work;
-        return work_ < kWorkPerLook ? struck_ : out_of_time();
+        return work_ < kWorkPerCheck ? expired_ : out_of_time();
     }
     /// Checks the deadline now.
     bool out_of_time() {
         work_ = 0;
-        struck_ = struck_ || total_work_ >= max_work_ || has_passed();
-        return struck_;
+        expired_ = expired_ || total_work_ >= max_work_ || has_passed();
+        return expired_;
     }
-    [[nodiscard]] bool struck() const { return struck_; }
+    [[nodiscard]] bool expired() const { return expired_; }
     /// The counted steps: the same on every machine.
     [[nodiscard]] std::int64_t total_work() const { return total_work_; }
 
@@ -50,7 +59,7 @@ class SearchClock {
     std::int64_t max_work_;
     std::size_t work_ = 0;
     std::int64_t total_work_ = 0;
-    bool struck_ = false;
+    bool expired_ = false;
 };
 
 }  // namespace conelane::path_pair

@@ -21,6 +21,26 @@ EdgeRelaxation::EdgeRelaxation(const LaneGraphProblem& problem)
         ends_.emplace_back(static_cast<int>(edge.i), static_cast<int>(edge.j));
         costs_.push_back(edge.cost);
     }
+    add_path_rows(problem);
+    const auto exclude = [&](std::size_t first, std::size_t second) {
+        rows_.push_back({{{variable_of[first], 1.0}, {variable_of[second], 1.0}}, -kInfinity, 1.0});
+    };
+    for (const auto& [first, second] : problem.conflicts) {  // (6)-(8)
+        if (variable_of[first] >= 0 && variable_of[second] >= 0) exclude(first, second);
+    }
+    for (const ProblemTurn& turn : problem.turns) {
+        const int first = variable_of[turn.edge_i];
+        const int second = variable_of[turn.edge_k];
+        if (first < 0 || second < 0) continue;
+        if (turn.high_cost) {
+            exclude(turn.edge_i, turn.edge_k);  // (28)
+        } else {
+            products_.push_back({std::min(first, second), std::max(first, second), turn.cost});
+        }
+    }
+}
+
+void EdgeRelaxation::add_path_rows(const LaneGraphProblem& problem) {
     const auto g = [&](std::size_t cone) { return static_cast<int>(edges_.size() + cone); };
     std::vector<std::vector<std::pair<int, double>>> degree(cone_count_);  // A_i
     for (std::size_t a = 0; a < ends_.size(); ++a) {
@@ -63,22 +83,6 @@ EdgeRelaxation::EdgeRelaxation(const LaneGraphProblem& problem)
         if (problem.edges[edges_[a]].along_heading) heading.terms.emplace_back(static_cast<int>(a), 1.0);
     }
     rows_.push_back(std::move(heading));
-    const auto exclude = [&](std::size_t first, std::size_t second) {
-        rows_.push_back({{{variable_of[first], 1.0}, {variable_of[second], 1.0}}, -kInfinity, 1.0});
-    };
-    for (const auto& [first, second] : problem.conflicts) {  // (6)-(8)
-        if (variable_of[first] >= 0 && variable_of[second] >= 0) exclude(first, second);
-    }
-    for (const ProblemTurn& turn : problem.turns) {
-        const int first = variable_of[turn.edge_i];
-        const int second = variable_of[turn.edge_k];
-        if (first < 0 || second < 0) continue;
-        if (turn.high_cost) {
-            exclude(turn.edge_i, turn.edge_k);  // (28)
-        } else {
-            products_.push_back({std::min(first, second), std::max(first, second), turn.cost});
-        }
-    }
 }
 
 double EdgeRelaxation::objective(std::span<const double> x) const {

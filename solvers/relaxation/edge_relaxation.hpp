@@ -44,6 +44,9 @@ class EdgeRelaxation {
     [[nodiscard]] std::vector<double> edge_values(std::span<const double> x) const;
 
   private:
+    /// The rows of single paths: (1)-(3), (9), (11)-(17).
+    void add_path_rows(const LaneGraphProblem& problem);
+
     std::size_t cone_count_;
     std::size_t problem_edges_;
     std::vector<std::size_t> edges_;

@@ -1,5 +1,6 @@
 #include "solvers/relaxation/relaxation_solver.hpp"
 
+#include "conelane/relaxation_solvers.hpp"
 #include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/detail/coin_deadline.hpp"
@@ -61,9 +62,9 @@ LpRelaxation solve_lp_relaxation(const LaneGraphProblem& problem, const Deadline
     detail::with_std_errors([&] {
         detail::prepare(interface, watch);
         (void)detail::load_into(interface, model.program());
-        if (!watch.strikes()) lp.dual();
+        if (!watch.must_stop()) lp.dual();
     });
-    if (watch.struck) {
+    if (watch.interrupted) {
         relaxation.stopped_by = StopReason::time;
         return relaxation;
     }
@@ -161,5 +162,10 @@ constexpr RldSolverEntry kLpRounding{
                                              const Deadline& /*deadline*/) { return linear; });
         },
     .library = "Clp " CLP_VERSION};
+
+std::span<const RldSolverEntry> relaxation_solvers() {
+    static const std::array kSolvers{kLpRounding, kNlopt, kIpopt};
+    return kSolvers;
+}
 
 }  // namespace conelane

@@ -3,6 +3,7 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/counted_allocations.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/testing.hpp"
@@ -53,10 +54,7 @@ TEST_P(EnumerationAllocations, NoneOnceTheMemoryIsThere) {
 }
 
 TEST(BeamAllocations, NoneOnceTheMemoryIsThere) {
-    Scene scene;
-    for (const Point& point : points()) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), point});
-    }
+    Scene scene = tests::cones_at(points());
     SearchGraph graph;
     graph.build(points(), 5.5);
     const std::vector<StartPair> starts = start_pairs(scene, 100, {});
@@ -74,10 +72,7 @@ TEST(BeamAllocations, NoneOnceTheMemoryIsThere) {
 }
 
 TEST(DetectionAllocations, NoneButTheTwoBoundariesOnceTheMemoryIsThere) {
-    Scene scene;
-    for (const Point& point : points()) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), point});
-    }
+    Scene scene = tests::cones_at(points());
     ClcOptions warm_start = extended_clc_options();
     warm_start.warm_start = true;
     for (const ClcOptions& options :

@@ -2,6 +2,7 @@
 #include "tests/support/counted_allocations.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
+#include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
@@ -9,13 +10,8 @@ namespace {
 
 TEST(FrontAllocations, OnlyTheAnswersBoundariesOnceMemoryIsWarm) {
     Scene scene = tests::straight_front_scene(10);
-    boost::random::mt19937_64 random(4);
-    boost::random::uniform_real_distribution<double> ahead(0.0, 45.0);
-    boost::random::uniform_real_distribution<double> left(-20.0, 20.0);
-    for (int i = 0; i < 60; ++i) {
-        const double x = ahead(random);
-        scene.cones.push_back({1000 + i, {x, left(random)}});
-    }
+    for (const Cone& cone : tests::strewn_scene(60, 45.0, 40.0).cones)
+        scene.cones.push_back({1000 + cone.id, cone.position});
     for (const FrontOptions& options : {shipped_front_options(), warm_front_options()}) {
         const auto detector = make_front_detector(options);
         const LaneAnswer first = detector->detect(scene, tests::kNoTimeLimit);

@@ -4,6 +4,7 @@
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "experiments/methods/method.hpp"
+#include "tests/support/detector_names.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -21,13 +22,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_in_library(std::string_view name) {
-    const std::vector<DetectorInfo> all = detectors();
-    return std::ranges::find(all, name, &DetectorInfo::name) != all.end();
+    return std::ranges::count(detectors(), name, &DetectorInfo::name) > 0;
 }
 
 std::vector<std::string> names() {
-    std::vector<std::string> all;
-    for (const DetectorInfo& detector : detectors()) all.emplace_back(detector.name);
+    std::vector<std::string> all = tests::detector_names();
     for (const experiments::Method& method : experiments::known_methods()) {
         if (!is_in_library(method.name)) all.emplace_back(method.name);
     }
@@ -77,7 +76,7 @@ void expect_consistent(const Scene& scene, const LaneAnswer& answer, bool may_be
         EXPECT_TRUE(answer.trusted_m);
     } else {
         EXPECT_EQ(answer.lane, Lane{});
-        EXPECT_FALSE(answer.uncut);
+        EXPECT_FALSE(answer.solved);
         EXPECT_FALSE(answer.trusted_m);
     }
     if (answer.status == LaneStatus::stopped) {

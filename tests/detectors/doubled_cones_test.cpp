@@ -6,6 +6,7 @@
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/counted_allocations.hpp"
+#include "tests/support/detector_names.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -139,13 +140,7 @@ TEST_P(DoublesOfFront, TakeNoTrustAway) {
 INSTANTIATE_TEST_SUITE_P(Front, DoublesOfFront, testing::Values("front", "front-warm"),
                          [](const auto& detector) { return case_name(detector.param); });
 
-std::vector<std::string> all_names() {
-    std::vector<std::string> names;
-    for (const DetectorInfo& detector : detectors()) names.emplace_back(detector.name);
-    return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()),
+INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(tests::detector_names()),
                          [](const auto& detector) { return case_name(detector.param); });
 
 TEST(DoubledCones, ASceneWithoutThemStaysUnchanged) {

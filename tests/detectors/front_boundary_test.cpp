@@ -145,7 +145,7 @@ TEST(FrontBoundary, OnlySmoothChainsBesideTheCarAreBoundaries) {
              {{14, 1.8}, {18, 1.8}, {22, 1.8}},          // far ahead
              {{1, 1.8}, {8, 1.8}, {15, 1.8}}}) {         // too far apart
         const LaneAnswer answer = front(cones_at(cones));
-        EXPECT_EQ(answer.status, LaneStatus::none) << cones[0].transpose() << ", " << cones[1].transpose();
+        EXPECT_EQ(answer.status, LaneStatus::none) << testing::PrintToString(cones);
         EXPECT_EQ(answer.lane, Lane{});
     }
 }

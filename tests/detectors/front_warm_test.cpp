@@ -7,7 +7,6 @@
 #include "evaluation/scoring/centre_line_error.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_evidence.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/testing.hpp"

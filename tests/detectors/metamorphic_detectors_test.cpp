@@ -3,6 +3,7 @@
 #include "conelane/detectors.hpp"
 #include "detectors/recipe.hpp"
 #include "evaluation/formats/scene_set.hpp"
+#include "tests/support/detector_names.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/testing.hpp"
@@ -109,12 +110,6 @@ TEST_P(DetectorMetamorphic, FindsTheSameLane) {
     EXPECT_EQ(outcome.different, 0U) << "of " << outcome.scenes;
 }
 
-std::vector<std::string> names() {
-    std::vector<std::string> all;
-    for (const DetectorInfo& detector : detectors()) all.emplace_back(detector.name);
-    return all;
-}
-
 class DetectorScale : public testing::TestWithParam<std::string> {};
 
 /// The RLD detector alone, without drivable: whether its lanes can be driven depends on metres.
@@ -128,7 +123,7 @@ std::unique_ptr<LaneDetector> bare_rld_detector(std::string_view name, const Det
 /// Scenes twice as large, with the lengths of the parameters.
 TEST(RldMetamorphic, FindsTheSameLaneAtAnotherScale) {
     const Change larger{"Larger", [](Scene scene) { return tests::scaled(std::move(scene), 2.0); }};
-    for (const std::string& name : names()) {
+    for (const std::string& name : tests::detector_names()) {
         if (!is_rld(name)) continue;
         SCOPED_TRACE(name);
         DetectorOptions options;
@@ -180,7 +175,8 @@ INSTANTIATE_TEST_SUITE_P(InMetres, DetectorScale,
                          [](const auto& test) { return case_name(test.param); });
 
 INSTANTIATE_TEST_SUITE_P(Detectors, DetectorMetamorphic,
-                         testing::Combine(testing::ValuesIn(names()), testing::ValuesIn(tests::changes())),
+                         testing::Combine(testing::ValuesIn(tests::detector_names()),
+                                          testing::ValuesIn(tests::changes())),
                          [](const auto& test) {
                              return case_name(std::get<0>(test.param)) + "_" +
                                     std::string(std::get<1>(test.param).name);

@@ -45,7 +45,7 @@ TEST(RldDetector, WithoutContextTakesAFalseConeAtTheEndOfItsConeSet) {
     EXPECT_THAT(answer.lane.left, ElementsAre(1, 2, 3, 200));
     EXPECT_THAT(answer.lane.right, ElementsAre(101, 102, 103));
     EXPECT_TRUE(answer.optimality);
-    EXPECT_FALSE(answer.uncut);
+    EXPECT_FALSE(answer.solved);
 }
 
 TEST(RldDetector, WithContextFindsTheLaneThatGoesOnAndCutsIt) {
@@ -54,10 +54,10 @@ TEST(RldDetector, WithContextFindsTheLaneThatGoesOnAndCutsIt) {
     EXPECT_THAT(answer.lane.left, ElementsAre(1, 2, 3));
     EXPECT_THAT(answer.lane.right, ElementsAre(101, 102, 103));
     EXPECT_FALSE(answer.optimality) << "what was proven is about the lane before the cut";
-    ASSERT_TRUE(answer.uncut);
-    EXPECT_THAT(answer.uncut->lane.left, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
-    ASSERT_TRUE(answer.uncut->optimality);
-    EXPECT_TRUE(answer.uncut->optimality->optimal);
+    ASSERT_TRUE(answer.solved);
+    EXPECT_THAT(answer.solved->lane.left, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+    ASSERT_TRUE(answer.solved->optimality);
+    EXPECT_TRUE(answer.solved->optimality->optimal);
 }
 
 TEST(RldDetector, ContextNoLargerThanTheConeSetChangesNothing) {
@@ -65,7 +65,7 @@ TEST(RldDetector, ContextNoLargerThanTheConeSetChangesNothing) {
     for (const std::size_t context : {3U, 7U}) {
         const LaneAnswer answer = detect(scene, 7, context);
         EXPECT_EQ(answer.lane, detect(scene, 7, std::nullopt).lane);
-        EXPECT_FALSE(answer.uncut);
+        EXPECT_FALSE(answer.solved);
     }
     EXPECT_EQ(detect(scene, std::nullopt, 5).lane, detect(scene, std::nullopt, std::nullopt).lane);
 }
@@ -94,7 +94,9 @@ TEST(RldDetector, TriesOtherValuesOfDNearWhereNoLaneGraphIsFeasible) {
     EXPECT_THAT(answer.lane.left, ElementsAre(3, 4, 5, 6, 7, 8));
     EXPECT_THAT(answer.lane.right, ElementsAre(101, 102, 103, 104, 105, 106, 107, 108));
     EXPECT_FALSE(answer.optimality) << "it is optimal for another program";
-    EXPECT_EQ(answer.other_d_near_m, 8.0);
+    ASSERT_TRUE(answer.solved);
+    EXPECT_EQ(answer.solved->lane, answer.lane);
+    EXPECT_EQ(answer.solved->d_near_m, 8.0);
     EXPECT_THAT(answer.message, HasSubstr("another d_near"));
 
     // All cones of a short view are near, so there is no far end.

@@ -51,7 +51,7 @@ void require_contract(const Scene& scene, const LaneAnswer& answer, bool may_be_
     switch (answer.status) {
         case LaneStatus::found:
             require_lane_of(scene, answer.lane, may_be_one_sided);
-            if (answer.uncut) require_lane_of(scene, answer.uncut->lane, may_be_one_sided);
+            if (answer.solved) require_lane_of(scene, answer.solved->lane, may_be_one_sided);
             break;
         case LaneStatus::none:
             require(!answer.stopped_by, "`none` is proven");
@@ -63,7 +63,7 @@ void require_contract(const Scene& scene, const LaneAnswer& answer, bool may_be_
             require(!answer.message.empty() && !is_on_a_map(scene), answer.message);
     }
     if (answer.status != LaneStatus::found) {
-        require(answer.lane == Lane{} && !answer.uncut, "without `found` there is no lane");
+        require(answer.lane == Lane{} && !answer.solved, "without `found` there is no lane");
     }
     if (answer.optimality) {
         require(std::isfinite(answer.optimality->objective), "an objective is finite");

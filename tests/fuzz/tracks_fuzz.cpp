@@ -1,7 +1,6 @@
-// The track readers: the bytes as each of the four formats. The line `---` separates the two files of an FSD
+// The track readers: the bytes as each format. The line `---` separates the two files of an FSD
 // track.
 
-#include "evaluation/formats/run_log.hpp"
 #include "evaluation/formats/track_readers.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
@@ -39,9 +38,9 @@ void read_all(std::string_view bytes) {
     const std::size_t parting = bytes.find(kParting);
     if (parting == std::string_view::npos) {
         const auto file = folder.write("track", bytes);
-        answers([&] { require_consistent(read_eufs_track(file)); });
-        answers([&] { require_consistent(read_pacsim_track(file)); });
-        answers([&] { require_consistent(read_run_log(file)); });
+        for (const TrackFormat* format : track_formats()) {
+            if (format->read != nullptr) answers([&] { require_consistent(format->read(file)); });
+        }
     } else {
         (void)folder.write("cone_map_1.yaml", bytes.substr(0, parting + 1));
         (void)folder.write("boundaries_1.yaml", bytes.substr(parting + kParting.size()));

@@ -1,9 +1,7 @@
 // Readers of weights: of `front`, of the network of `clc`, of step scores. Weights that are read are valid,
 // and after writing they read the same.
 
-#include "evaluation/formats/front_weights_file.hpp"
-#include "evaluation/formats/rank_net_file.hpp"
-#include "evaluation/formats/step_score_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "tests/fuzz/expectations.hpp"
 
 #include <cstddef>

@@ -1,7 +1,10 @@
-// The checker's rules one by one, on a lane that can be followed by hand.
+// The rules and costs of the model one by one, on a lane that can be followed by hand: the checker, the
+// verification of answers and the problem agree on each.
 
 #include "conelane/check.hpp"
 
+#include "conelane/lane_graph_problem.hpp"
+#include "model/answer_verification.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"
 
@@ -14,196 +17,152 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using tests::six_cone_lane;
-
-constexpr double kRounding = 1e-9;
-
-void add_cone(Scene& scene, const Point& position) {
-    scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-}
+using P = RldParameters;
 
 const LaneGraph kLane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
-
-std::vector<std::string> violations(const Scene& scene, const RldParameters& parameters,
-                                    const LaneGraph& graph = kLane) {
-    return check(scene, parameters, graph).violations;
-}
-
-double objective(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph = kLane) {
-    return check(scene, parameters, graph).objective.value();
-}
-
-/// All four edges have the expected length and angles, and are along the heading.
-TEST(Check, AcceptsTheStraightLane) {
-    const CheckReport report = check(six_cone_lane(), {}, kLane);
-    EXPECT_THAT(report.violations, IsEmpty());
-    EXPECT_FALSE(report.is_final);
-    EXPECT_EQ(report.along_heading, 4U);
-    EXPECT_NEAR(report.objective.value(), -4.0, kRounding);
-}
-
-TEST(Check, NoConeHasThreeEdges) {
-    Scene scene = six_cone_lane();
-    add_cone(scene, {4.2, 4.95});
-    const CheckReport report = check(scene, {}, {{{0, 1}, {1, 2}, {1, 6}, {3, 4}, {4, 5}}});
-    EXPECT_THAT(report.violations, Contains(HasSubstr("(2) cone 1 has degree 3")));
-    EXPECT_TRUE(report.is_final);
-}
-
-TEST(Check, FourEndpointsOfWhichTwoAreNear) {
-    Scene scene = six_cone_lane();
-    add_cone(scene, {20.0, 1.75});
-    add_cone(scene, {23.2, 1.75});
-    EXPECT_THAT(violations(scene, {}, {{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {6, 7}}}),
-                Contains(HasSubstr("(3) 6 endpoints")));
-    EXPECT_THAT(violations(scene, {}, {{{0, 1}, {1, 2}}}), Contains(HasSubstr("(3) 2 endpoints")));
-
-    RldParameters parameters;
-    parameters.d_near = 1.0;
-    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 0 near")));
-    parameters.d_near = 8.0;
-    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 4 near")));
-    parameters.d_side = 1.0;  // all cones are 1.75 m from the car's axis
-    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 0 near")));
-}
-
-TEST(Check, FarEndsMayBeExactlyDMaxApart) {
-    RldParameters parameters;
-    parameters.d_max = 3.5;
-    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
-    parameters.d_max = 3.4;
-    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(17)")));
-}
-
-TEST(Check, NoPathGoesRound) {
-    const CheckReport report = check(six_cone_lane(), {}, {{{0, 1}, {0, 3}, {1, 4}, {3, 4}}});
-    EXPECT_THAT(report.violations, Contains(HasSubstr("(5) a cycle through cone 0")));
-    EXPECT_TRUE(report.is_final);
-}
-
 /// One path joins the near cones 0 and 3, the other one the far cones 2 and 5.
-TEST(Check, ThePairingSaysWhichEndsAPathMayHave) {
-    const LaneGraph across{{{0, 3}, {2, 5}}};
-    EXPECT_THAT(violations(six_cone_lane(), {}, across), Contains(HasSubstr("joins both near endpoints")));
-    RldParameters parameters;
-    parameters.pairing = Pairing::paper;
-    EXPECT_THAT(violations(six_cone_lane(), parameters, across), Each(Not(HasSubstr("joins both"))));
+const LaneGraph kAcross{{{0, 3}, {2, 5}}};
+
+Scene with_cones(Scene scene, const std::vector<Point>& places) {
+    for (const Point& place : places) scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    return scene;
+}
+Scene seen_from(Scene scene, const Pose& pose) {
+    scene.pose = pose;
+    return scene;
 }
 
-/// At 1.6 m ahead, the cones of one boundary are beside the middles of the other boundary's edges.
-TEST(Check, BoundariesKeepTheirDistanceExceptBetweenFacingCones) {
-    RldParameters parameters;
-    parameters.d_min = 3.5;
-    EXPECT_THAT(violations(six_cone_lane(1.6), parameters), IsEmpty());
-    parameters.d_min = 3.6;
-    EXPECT_THAT(violations(six_cone_lane(1.6), parameters), Contains(HasSubstr("(6)")));
-    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
+/// A lane graph and what is wrong with it; nothing for a lane.
+struct Case {
+    std::string violation;  ///< part of a sentence of the checker
+    std::string fault;      ///< part of the sentence of the verification of answers
+    Scene scene = six_cone_lane();
+    std::vector<std::pair<double P::*, double>> set{};  ///< parameters that are not the default
+    LaneGraph graph = kLane;
+    bool is_final = false;
+    Pairing pairing = Pairing::near_far;
+};
+
+std::vector<Case> cases() {
+    const Scene lane = six_cone_lane();
+    // At 1.6 m ahead, the cones of one boundary are beside the middles of the other boundary's edges.
+    const Scene shifted = six_cone_lane(1.6);
+    const Scene corner = with_cones(lane, {{4.2, 4.95}});  // costs (pi / 2 / 0.9)^4 = 9.3
+    const Scene longer = with_cones(lane, {{20.0, 1.75}, {23.2, 1.75}});
+    const Scene doubled = with_cones(lane, {lane.cones[0].position});
+    const std::vector<std::pair<double P::*, double>> any_heading{{&P::theta_heading, std::numbers::pi / 2},
+                                                                  {&P::d_h, 10.0}};
+    // Facing edges whose ends are 1.6e-12 m farther apart than their nearest points: within a tie. So far
+    // from the origin, coordinates are 1e-4 m apart.
+    const Scene far_off = with_cones({.id = "far", .pose = {{1e12, 0.3}, 0.75}, .cones = {}},
+                                     {{1000000000001.8542, 2.710760714506913},
+                                      {1000000000004.0493, 4.755676994576915},
+                                      {1000000000002.5359, 1.979071845633092},
+                                      {1000000000004.731, 4.023988125703094}});
+    return {
+        {"", ""},
+        {"(2) cone 1 has degree 3",
+         "more than two edges",
+         corner,
+         {},
+         {{{0, 1}, {1, 2}, {1, 6}, {3, 4}, {4, 5}}},
+         true},
+        {"(3) 6 endpoints", "more than two paths", longer, {}, {{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {6, 7}}}},
+        {"(3) 2 endpoints", "not two paths but 1", lane, {}, {{{0, 1}, {1, 2}}}},
+        {"(3) 0 endpoints", "not two paths but 0", lane, {}, {}},
+        {"(11) 4 near", "4 near and 0 far ends", lane, {}, {{{0, 1}, {3, 4}}}},
+        {"(11) 0 near", "0 near and 4 far ends", lane, {{&P::d_near, 1.0}}},
+        {"(11) 4 near", "4 near and 0 far ends", lane, {{&P::d_near, 8.0}}},
+        {"(11) 0 near", "0 near and 4 far ends", lane, {{&P::d_side, 1.0}}},  // all are 1.75 m aside
+        {"", "", lane, {{&P::d_max, 3.5}}},
+        {"(17)", "(17)", lane, {{&P::d_max, 3.4}}},
+        {"(5) a cycle through cone 0", "(28)", lane, {}, {{{0, 1}, {0, 3}, {1, 4}, {3, 4}}}, true},
+        {"joins both near endpoints", "from a near cone to a far one", lane, any_heading, kAcross},
+        {"", "", lane, any_heading, kAcross, false, Pairing::paper},
+        {"", "", shifted, {{&P::d_min, 3.5}}},
+        {"(6)", "(7)", shifted, {{&P::d_min, 3.6}}, kLane, true},
+        {"", "", lane, {{&P::d_min, 3.6}}},
+        {"(6)", "(7)", lane, {{&P::d_min, 1.0}}, {{{1, 5}, {2, 4}}}, true},
+        {"", "", far_off, {}, {{{0, 1}, {2, 3}}}},
+        {"", "", lane, {{&P::d_e, 5.2}}},  // the cost of each edge is (2 / 1.7)^4 = 1.9
+        {"(27) edge {0, 1}", "(27)", lane, {{&P::d_e, 5.2}, {&P::s_crit, 1.0}}, kLane, true},
+        {"(28) the angle at cone 1", "(28)", corner, {}, {{{0, 1}, {1, 6}}}, true},
+        {"has no length", "(27)", doubled, {}, {{{0, 6}}}, true},
+        {"", "", lane, {{&P::d_h, 2.1}}},  // 0 and 3 are 2.02 m away
+        {"(9) 1 edges", "(9)", seen_from(lane, {{0.0, 1.0}, 0.0}), {{&P::d_h, 2.1}}},
+    };
 }
 
-/// {1, 5} and {2, 4} cross in (5.8, 0); their ends are more than 2 m from each other.
-/// Two facing edges whose ends are 1.6e-12 m farther apart than their nearest points: within a tie. So far
-/// from the origin, coordinates are 1e-4 m apart.
-TEST(Check, FacingConesAreSeenFarFromTheOrigin) {
-    Scene scene;
-    scene.pose = {{1e12, 0.3}, 0.75};
-    for (const Point& position : {Point{1000000000001.8542, 2.710760714506913},
-                                  {1000000000004.0493, 4.755676994576915},
-                                  {1000000000002.5359, 1.979071845633092},
-                                  {1000000000004.731, 4.023988125703094}})
-        add_cone(scene, position);
-    EXPECT_THAT(violations(scene, {}, {{{0, 1}, {2, 3}}}), IsEmpty());
+RldParameters parameters_of(const Case& tried) {
+    RldParameters parameters;
+    parameters.pairing = tried.pairing;
+    for (const auto& [parameter, value] : tried.set) parameters.*parameter = value;
+    return parameters;
 }
 
-TEST(Check, EdgesThatCrossAreAtNoDistance) {
-    const LaneGraph crossing{{{1, 5}, {2, 4}}};
-    RldParameters parameters;
-    parameters.d_min = 1.0;
-    EXPECT_THAT(violations(six_cone_lane(), parameters, crossing), Contains(HasSubstr("(6)")));
-    parameters.d_min = 0.0;
-    EXPECT_THAT(violations(six_cone_lane(), parameters, crossing), Each(Not(HasSubstr("cross"))));
-    parameters.forbid_crossing = true;
-    EXPECT_THAT(violations(six_cone_lane(), parameters, crossing), Contains(HasSubstr("crossing:")));
+TEST(Check, NamesTheBrokenRuleAndAgreesWithTheProblem) {
+    for (const Case& tried : cases()) {
+        SCOPED_TRACE(tried.violation);
+        const RldParameters parameters = parameters_of(tried);
+        const CheckReport report = check(tried.scene, parameters, tried.graph);
+        const LaneGraphProblem problem = make_problem(tried.scene, parameters, EdgeExtent::all_pairs);
+        const std::string fault = verify_answer(problem, tried.graph).violation;
+        EXPECT_EQ(report.is_final, tried.is_final);
+        if (tried.violation.empty()) {
+            EXPECT_THAT(report.violations, IsEmpty());
+            EXPECT_EQ(fault, "");
+            EXPECT_TRUE(is_feasible(problem, tried.graph));
+        } else {
+            EXPECT_THAT(report.violations, Contains(HasSubstr(tried.violation)));
+            EXPECT_THAT(fault, HasSubstr(tried.fault));
+            EXPECT_FALSE(is_feasible(problem, tried.graph));
+        }
+    }
 }
 
 /// Edges {0, 1} and {2, 3}, the latter's end past the former by less than a tie of 1e-9 m, then by more.
-TEST(Check, EdgesThatTouchWithinATieDoNotCross) {
-    Scene scene;
-    for (const Point& place : {Point{0, 0}, Point{4, 0}, Point{2, -5e-10}, Point{2, 3}})
-        add_cone(scene, place);
+TEST(Check, EdgesCrossOnlyBeyondATieAndWhereTheyMayNot) {
+    Scene scene = with_cones({}, {{0, 0}, {4, 0}, {2, -5e-10}, {2, 3}});
     RldParameters parameters;
     parameters.d_min = 0.0;
     parameters.forbid_crossing = true;
     const LaneGraph touching{{{0, 1}, {2, 3}}};
-    EXPECT_THAT(violations(scene, parameters, touching), Each(Not(HasSubstr("cross"))));
+    const auto violations = [&] { return check(scene, parameters, touching).violations; };
+    EXPECT_THAT(violations(), Each(Not(HasSubstr("cross"))));
     scene.cones[2].position.y() = -2e-9;
-    EXPECT_THAT(violations(scene, parameters, touching), Contains(HasSubstr("crossing:")));
-}
-
-TEST(Check, LimitsOfSpacingAndAngle) {
-    RldParameters parameters;
-    parameters.d_e = 5.2;  // the cost of each edge is (2 / 1.7)^4 = 1.9
-    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
-    parameters.s_crit = 1.0;
-    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(27) edge {0, 1}")));
-
-    Scene scene = six_cone_lane();
-    add_cone(scene, {4.2, 4.95});  // a square corner costs (pi / 2 / 0.9)^4 = 9.3
-    EXPECT_THAT(violations(scene, {}, {{{0, 1}, {1, 6}}}), Contains(HasSubstr("(28) the angle at cone 1")));
-
-    add_cone(scene, scene.cones[0].position);
-    EXPECT_THAT(violations(scene, {}, {{{0, 7}}}), Contains(HasSubstr("has no length")));
+    EXPECT_THAT(violations(), Contains(HasSubstr("crossing:")));
+    parameters.forbid_crossing = false;
+    EXPECT_THAT(violations(), Each(Not(HasSubstr("cross"))));
 }
 
 /// An edge counts in (9) if it is near the car and along its heading.
-TEST(Check, TwoEdgesAlongTheHeading) {
-    Scene scene = six_cone_lane();
-    add_cone(scene, {20.0, 1.75});
-    add_cone(scene, {23.2, 1.75});
+TEST(Check, CountsTheEdgesAlongTheHeading) {
+    const Scene scene = with_cones(six_cone_lane(), {{20.0, 1.75}, {23.2, 1.75}});
+    EXPECT_EQ(check(scene, {}, kLane).along_heading, 4U);
     EXPECT_EQ(check(scene, {}, {{{6, 7}}}).along_heading, 0U) << "far from the car";
     EXPECT_EQ(check(scene, {}, {{{0, 3}}}).along_heading, 0U) << "across its way";
     EXPECT_EQ(check(scene, {}, {{{0, 1}}}).along_heading, 1U);
-
-    RldParameters parameters;
-    parameters.d_h = 2.1;  // 0 and 3 are 2.02 m away
-    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
-    scene = six_cone_lane();
-    scene.pose.position = {0.0, 1.0};
-    EXPECT_THAT(violations(scene, parameters), Contains(HasSubstr("(9) 1 edges")));
 }
 
-TEST(Check, AnEdgeOverTheCarCostsAsIfItWereHalfAMetreAway) {
-    Scene scene = six_cone_lane();
-    scene.pose = {{2.6, 1.75}, std::numbers::pi / 2.0};
-    EXPECT_NEAR(objective(scene, {}, {{{0, 1}}}), 1.2 * std::pow(3.2 / 0.5, 4) - 1.0, 1e-6);
+/// The objective of the checker, which has to be the problem's.
+double cost(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph = kLane) {
+    const double checked = check(scene, parameters, graph).objective.value();
+    EXPECT_NEAR(objective(make_problem(scene, parameters, EdgeExtent::all_pairs), graph), checked, 1e-9);
+    return checked;
 }
 
-TEST(Check, ConfidencesOfBothConesScaleTheBenefit) {
+TEST(Check, CostsByHand) {
+    EXPECT_NEAR(cost(six_cone_lane(), {}), -4.0, 1e-9) << "expected lengths and angles, along the heading";
+    EXPECT_NEAR(cost(seen_from(six_cone_lane(), {{2.6, 1.75}, std::numbers::pi / 2}), {}, {{{0, 1}}}),
+                1.2 * std::pow(3.2 / 0.5, 4) - 1.0, 1e-6)
+        << "an edge over the car costs as if it were half a metre away";
     Scene scene = six_cone_lane();
     scene.cones[0].confidence = 0.5;
     scene.cones[1].confidence = 0.4;
     RldParameters parameters;
-    EXPECT_NEAR(objective(scene, parameters), -4.0, kRounding);
+    EXPECT_NEAR(cost(scene, parameters), -4.0, 1e-9);
     parameters.use_confidence = true;
-    EXPECT_NEAR(objective(scene, parameters), -(0.5 * 0.4 + 0.4 + 1.0 + 1.0), kRounding);
-}
-
-/// The near ends are 1.75 m beside the axis, half of the usual width is 1.8 m.
-TEST(Check, NearEndsBesideTheCarEarnABenefit) {
-    RldParameters parameters;
-    parameters.w_n = 0.5;
-    EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0 - 2.0 * 0.5 * (1.0 - std::pow(0.05 / 1.7, 2)),
-                kRounding);
-    parameters.d_w = 10.0;  // far off: no benefit, and no cost
-    EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0, kRounding);
-}
-
-TEST(Check, UnevenSpacingCosts) {
-    Scene scene = six_cone_lane();
-    scene.cones[2].position.x() += 1.0;
-    const double spacing = 0.4 * std::pow(1.0 / 1.7, 4);
-    RldParameters parameters;
-    EXPECT_NEAR(objective(scene, parameters), -4.0 + spacing, kRounding);
-    parameters.w_u = 2.0;
-    EXPECT_NEAR(objective(scene, parameters), -4.0 + spacing + 2.0 * std::pow(1.0 / 1.7, 2), kRounding);
+    EXPECT_NEAR(cost(scene, parameters), -(0.5 * 0.4 + 0.4 + 1.0 + 1.0), 1e-9);
 }
 
 TEST(CheckClaim, IsComparedWithTheRecomputedValues) {

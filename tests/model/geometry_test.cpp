@@ -2,10 +2,37 @@
 
 #include "tests/support/testing.hpp"
 
+#include <Eigen/Core>
+
 namespace conelane {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+
+/// To the last bit, so that no answer depends on which of the two a caller uses.
+TEST(Point, ConvertsFromAndToVectorsOfEigenAndComputesLikeThem) {
+    boost::random::mt19937_64 random(1);
+    boost::random::uniform_real_distribution<double> any(-10.0, 10.0);
+    for (int k = 0; k < 1000; ++k) {
+        const Eigen::Vector2d a(any(random), any(random));
+        const Eigen::Vector2d b(any(random), any(random));
+        const Point p = a;
+        const Point q(b.x(), b.y());
+        const double factor = any(random);
+        EXPECT_EQ(Point(a + factor * b), p + factor * q);
+        EXPECT_EQ(Point(a - b / factor), p - q / factor);
+        EXPECT_EQ(a.dot(b), p.dot(q));
+        EXPECT_EQ(a.norm(), p.norm());
+        EXPECT_EQ(Point(a.normalized()), p.normalized());
+        EXPECT_EQ(Point(a.cwiseMin(b)), p.cwiseMin(q));
+        EXPECT_EQ(a.cwiseAbs().maxCoeff(), p.cwiseAbs().maxCoeff());
+        const Eigen::Vector2d back = p;
+        EXPECT_EQ(back, a);
+    }
+    EXPECT_EQ(Point().normalized(), Point(0, 0));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(std::isnan(Point(nan, 1.0).maxCoeff()) && std::isnan(Point(1.0, nan).maxCoeff()));
+}
 
 TEST(FootPoint, LiesInsideTheSegmentOrAtItsNearerEnd) {
     const Segment along_x{{0, 0}, {4, 0}};
@@ -19,18 +46,6 @@ TEST(FootPoint, OfASegmentWithoutLengthIsItsOnlyPoint) {
     const FootPoint foot = foot_point({3, 4}, {{0, 0}, {0, 0}});
     EXPECT_DOUBLE_EQ(foot.parameter, 0.0);
     EXPECT_DOUBLE_EQ(foot.distance_m, 5.0);
-}
-
-TEST(SegmentDistance, BetweenEnds) {
-    const SegmentDistance d = segment_distance({{0, 0}, {1, 0}}, {{2, 0}, {3, 1}});
-    EXPECT_DOUBLE_EQ(d.distance_m, 1.0);
-    EXPECT_TRUE(d.between_ends);
-}
-
-TEST(SegmentDistance, FromAnEndToTheInside) {
-    const SegmentDistance d = segment_distance({{0, 0}, {4, 0}}, {{2, 1}, {2, 5}});
-    EXPECT_DOUBLE_EQ(d.distance_m, 1.0);
-    EXPECT_FALSE(d.between_ends);
 }
 
 TEST(SegmentDistance, ExactlyFacingSegmentsTieAndCountAsBetweenEnds) {

@@ -5,6 +5,7 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph.hpp"
+#include "model/answer_verification.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"
 
@@ -69,9 +70,9 @@ TEST(MapByConeId, FindsConesAgainAndDropsMissingOnes) {
     EXPECT_EQ(map_by_cone_id(before, graph, before), graph);
 }
 
-/// Random sets of up to six edges, many of them lanes with one error: the problem's own test and the checker,
-/// which share no code, must agree.
-TEST(IsFeasible, AgreesWithTheChecker) {
+/// Random sets of up to six edges, many of them lanes with one error: the problem's own test, the
+/// verification of answers and the checker, which share no code, must agree.
+TEST(IsFeasible, AgreesWithTheVerificationAndTheChecker) {
     int feasible = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
         boost::random::mt19937_64 random(seed);
@@ -98,8 +99,13 @@ TEST(IsFeasible, AgreesWithTheChecker) {
             std::ranges::sort(graph.edges);
             graph.edges.erase(std::unique(graph.edges.begin(), graph.edges.end()), graph.edges.end());
             const bool valid = check(scene, parameters, graph).violations.empty();
-            ASSERT_EQ(is_feasible(problem, graph), valid) << "seed " << seed << ", trial " << trial;
-            if (valid) ++feasible;
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", trial " << trial);
+            ASSERT_EQ(is_feasible(problem, graph), valid);
+            const VerifiedAnswer answer = verify_answer(problem, graph);
+            ASSERT_EQ(answer.violation.empty(), valid) << answer.violation;
+            if (!valid) continue;
+            ++feasible;
+            EXPECT_NEAR(answer.objective, objective(problem, graph), 1e-9);
         }
     }
     EXPECT_GT(feasible, 100);

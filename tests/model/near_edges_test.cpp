@@ -11,34 +11,12 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(ComeCloser, OppositeSegmentsThatLieAlongEachOther) {
-    const MeasuredSegment below{{0, 0}, {4, 0}};
-    EXPECT_TRUE(come_closer(below, {{1, 3}, {5, 3}}, 3.1));
-    EXPECT_FALSE(come_closer(below, {{1, 3}, {5, 3}}, 3.0));
-    EXPECT_FALSE(come_closer(below, {{0, 3}, {4, 3}}, 3.1)) << "nearest between their ends";
-    EXPECT_FALSE(come_closer(below, {{4, 0}, {5, 3}}, 3.1)) << "they share an end";
-}
-
-// The ends of a long cross are far from the other arm; its middle is not.
-TEST(ComeCloser, CrossingSegments) {
-    EXPECT_TRUE(come_closer({{-4, 0}, {4, 0}}, {{0, -4}, {0, 4}}, 1.0));
-    EXPECT_TRUE(come_closer({{0, -4}, {0, 4}}, {{-4, 0}, {4, 0}}, 1.0));
-    EXPECT_FALSE(come_closer({{-4, 0}, {4, 0}}, {{0, 2}, {0, 4}}, 1.0)) << "the second one ends before";
-    EXPECT_FALSE(come_closer({{-4, 0}, {4, 0}}, {{0, -4}, {0, 4}}, 0.0)) << "nothing is closer than 0";
-}
-
-TEST(ComeCloser, OneWithoutLengthIsAPoint) {
-    EXPECT_TRUE(come_closer({{2, 1}, {2, 1}}, {{0, 0}, {4, 0}}, 1.1));
-    EXPECT_FALSE(come_closer({{2, 1}, {2, 1}}, {{0, 0}, {4, 0}}, 1.0));
-    EXPECT_FALSE(come_closer({{2, 1}, {2, 1}}, {{2, 1}, {2, 1}}, 1.0));
-}
-
 class RandomPoints {
   public:
     explicit RandomPoints(std::uint64_t seed) : random_(seed) {}
 
     /// On a grid, some segments touch, are parallel, overlap, or have no length.
-    Point on_grid() { return {grid_(random_), grid_(random_)}; }
+    Point on_grid() { return Point(grid_(random_), grid_(random_)); }
     Point anywhere() { return {anywhere_(random_), anywhere_(random_)}; }
 
   private:
@@ -82,7 +60,11 @@ Scene three_edges() {
 
 std::vector<ProblemEdge> edges_between(const std::vector<std::pair<std::size_t, std::size_t>>& cones) {
     std::vector<ProblemEdge> edges;
-    for (const auto& [i, j] : cones) edges.push_back({i, j, 0, 0, 0, 0, 0, false, false});
+    for (const auto& [i, j] : cones) {
+        edges.emplace_back();
+        edges.back().i = i;
+        edges.back().j = j;
+    }
     return edges;
 }
 

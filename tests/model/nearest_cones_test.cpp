@@ -13,60 +13,16 @@ namespace {
 
 using tests::cones_at;
 
-/// The listed edge, if it may be chosen. Both extents and the checker have to agree on that.
-std::optional<ProblemEdge> allowed(const Scene& scene, const RldParameters& parameters, std::size_t i,
-                                   std::size_t j) {
-    const auto find = [&](EdgeExtent extent) -> std::optional<ProblemEdge> {
-        for (const ProblemEdge& edge : make_problem(scene, parameters, extent).edges) {
-            if (edge.i == i && edge.j == j && !edge.high_cost) return edge;
-        }
-        return std::nullopt;
-    };
-    const auto edge = find(EdgeExtent::candidates);
-    EXPECT_EQ(find(EdgeExtent::all_pairs).has_value(), edge.has_value());
-    EXPECT_EQ(check(scene, parameters, {{{i, j}}}).is_final, !edge.has_value());
-    return edge;
-}
-
-/// Cones at 0, 1, 2.5 and 4.5 m of a line. Seen from the first cone, the last one is the third nearest; seen
-/// from the last cone, the first one is the third nearest, too.
-TEST(NearestCones, AreCountedFromEitherEnd) {
-    const Scene line = cones_at({{0.0, 0.0}, {1.0, 0.0}, {2.5, 0.0}, {4.5, 0.0}});
-    RldParameters parameters;
-    parameters.s_crit = 20.0;
-    EXPECT_TRUE(allowed(line, parameters, 0, 3)) << "0 is no limit";
-    parameters.k_edge = 3.0;
-    EXPECT_TRUE(allowed(line, parameters, 0, 3));
-    parameters.k_edge = 2.0;
-    EXPECT_FALSE(allowed(line, parameters, 0, 3));
-    EXPECT_TRUE(allowed(line, parameters, 0, 2));
-    parameters.k_edge = 1.0;
-    EXPECT_TRUE(allowed(line, parameters, 0, 1));
-    EXPECT_TRUE(allowed(line, parameters, 1, 2)) << "1 is the nearest of 2, though 0 is nearer to 1 than 2";
-    EXPECT_TRUE(allowed(line, parameters, 2, 3)) << "2 is the nearest of 3";
-    EXPECT_FALSE(allowed(line, parameters, 0, 2));
-    EXPECT_FALSE(allowed(line, parameters, 1, 3));
-}
-
 /// Cones at the same distance have the same rank.
 TEST(NearestCones, AtTheSameDistanceAreAllAmongTheNearest) {
     const Scene star = cones_at({{0.0, 0.0}, {3.2, 0.0}, {0.0, 3.2}, {-3.2, 0.0}, {0.0, -3.2}});
     RldParameters parameters;
-    parameters.k_edge = 1.0;
-    for (std::size_t ray = 1; ray < star.cones.size(); ++ray) EXPECT_TRUE(allowed(star, parameters, 0, ray));
-}
-
-TEST(NearestCones, HaveALimitOfTheirOwnOverGaps) {
-    const Scene row = cones_at({{-3.2, 0.0}, {0.0, 0.0}, {6.4, 0.0}, {9.6, 0.0}});
-    RldParameters parameters;
-    parameters.d_gap = 7.0;
-    parameters.k_edge = 1.0;
-    ASSERT_TRUE(allowed(row, parameters, 1, 2));
-    EXPECT_TRUE(allowed(row, parameters, 1, 2)->gap);
-    parameters.k_gap = 1.0;
-    EXPECT_FALSE(allowed(row, parameters, 1, 2)) << "both have a nearer neighbour behind them";
-    parameters.k_gap = 2.0;
-    EXPECT_TRUE(allowed(row, parameters, 1, 2));
+    parameters.nearest_of_edge = 1.0;
+    std::size_t rays = 0;
+    for (const ProblemEdge& edge : make_problem(star, parameters).edges) rays += edge.i == 0 ? 1 : 0;
+    EXPECT_EQ(rays, 4U);
+    for (std::size_t ray = 1; ray < star.cones.size(); ++ray)
+        EXPECT_FALSE(check(star, parameters, {{{0, ray}}}).is_final);
 }
 
 /// All edges of random scenes, by the definition: fewer than k cones nearer, at one end.
@@ -79,9 +35,8 @@ TEST(NearestCones, AreThoseOfTheDefinition) {
         parameters.d_gap = 9.0;
         parameters.theta_gap = 0.7;
         const LaneGraphProblem unlimited = make_problem(scene, parameters);
-        parameters.k_edge = static_cast<double>(1 + seed % 4);
-        parameters.k_gap = static_cast<double>(2 + seed % 5);
-        const LaneGraphProblem limited = make_problem(scene, parameters);
+        parameters.nearest_of_edge = static_cast<double>(1 + seed % 4);
+        parameters.nearest_of_gap = static_cast<double>(2 + seed % 5);
         const auto distance = [&](std::size_t a, std::size_t b) {
             return (scene.cones[a].position - scene.cones[b].position).norm();
         };
@@ -93,15 +48,19 @@ TEST(NearestCones, AreThoseOfTheDefinition) {
         };
         std::vector<Edge> expected;
         for (const ProblemEdge& edge : unlimited.edges) {
-            const double k = edge.gap ? parameters.k_gap : parameters.k_edge;
+            const double k = edge.gap ? parameters.nearest_of_gap : parameters.nearest_of_edge;
             const bool kept = rank(edge.i, edge.j) < k || rank(edge.j, edge.i) < k;
             if (kept) expected.push_back({edge.i, edge.j});
             excluded += kept ? 0 : 1;
             EXPECT_EQ(check(scene, parameters, {{{edge.i, edge.j}}}).is_final, !kept);
         }
-        std::vector<Edge> listed;
-        for (const ProblemEdge& edge : limited.edges) listed.push_back({edge.i, edge.j});
-        EXPECT_EQ(listed, expected);
+        for (const EdgeExtent extent : {EdgeExtent::candidates, EdgeExtent::all_pairs}) {
+            std::vector<Edge> allowed;
+            for (const ProblemEdge& edge : make_problem(scene, parameters, extent).edges) {
+                if (!edge.high_cost) allowed.push_back({edge.i, edge.j});
+            }
+            EXPECT_EQ(allowed, expected);
+        }
     }
     EXPECT_GT(excluded, 100);
 }
@@ -113,11 +72,11 @@ TEST(NearestCones, ChangeNoCost) {
         const Scene scene = tests::random_scene(seed, 12);
         RldParameters parameters;
         parameters.d_gap = 9.0;
-        parameters.w_v = 0.7;
+        parameters.facing_weight = 0.7;
         parameters.learned_costs = tests::random_learned_costs(seed, 4);
         const LaneGraphProblem unlimited = make_problem(scene, parameters);
-        parameters.k_edge = 3.0;
-        parameters.k_gap = 4.0;
+        parameters.nearest_of_edge = 3.0;
+        parameters.nearest_of_gap = 4.0;
         const LaneGraphProblem limited = make_problem(scene, parameters);
         ASSERT_LT(limited.edges.size(), unlimited.edges.size());
         for (const ProblemEdge& edge : limited.edges) {

@@ -13,9 +13,9 @@ namespace {
 
 RldParameters with_all_costs() {
     RldParameters parameters;
-    parameters.w_u = 0.3;
-    parameters.w_v = 0.8;
-    parameters.w_n = 0.9;
+    parameters.unevenness_weight = 0.3;
+    parameters.facing_weight = 0.8;
+    parameters.near_end_weight = 0.9;
     return parameters;
 }
 

@@ -184,13 +184,6 @@ class PlaygroundTest(unittest.TestCase):
         self.value("playground.turn('clc', true)")
         self.assertEqual(self.settled("playground.state.found.clc.answer.status"), "found")
 
-    def test_frames_while_dragging(self):
-        self.open()
-        self.browser.wait_for("document.body.dataset.selfTest")
-        rate = self.value("playground.measure().then(({ rate }) => rate)")
-        print(f"dragging among 150 cones: {rate:.1f} frames a second", file=sys.stderr)
-        self.assertGreater(rate, 10.0)  # 60 where nothing else runs; a machine that is busy otherwise has less
-
     def test_phone(self):
         self.open(400, 800, is_phone=True)
         self.assertLessEqual(self.value("document.documentElement.scrollWidth"), 400)

@@ -1,6 +1,7 @@
 // module_test.mjs MODULE_DIR STORED.json: the module in Node. Its lanes are those of the native program; what is not valid is
 // refused by name; an error inside ends an instance, and the next call has another. Exit code 77 where it was not built.
 import assert from "node:assert/strict";
+import { test } from "node:test";
 import { existsSync, readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
@@ -148,15 +149,4 @@ const tests = {
   },
 };
 
-let failed = 0;
-for (const [name, test] of Object.entries(tests)) {
-  try {
-    test();
-    console.log(`ok - ${name}`);
-  } catch (error) {
-    failed += 1;
-    console.log(`not ok - ${name}\n${error.stack}`);
-  }
-}
-console.log(`${Object.keys(tests).length - failed} passed, ${failed} failed`);
-process.exit(failed ? 1 : 0);
+for (const [name, run] of Object.entries(tests)) test(name, run);

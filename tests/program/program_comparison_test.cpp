@@ -1,6 +1,6 @@
 // Folders of comparisons: written, resumed, merged.
 
-#include "evaluation/formats/folder_lock.hpp"
+#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/testing.hpp"

@@ -305,7 +305,7 @@ class Threads(unittest.TestCase):
 
 
 class Plot(unittest.TestCase):
-    def test_a_lane_is_drawn(self):
+    def test_a_lane_is_drawn_and_where_there_is_none_the_cones_are(self):
         import matplotlib
 
         matplotlib.use("Agg")
@@ -320,13 +320,6 @@ class Plot(unittest.TestCase):
         np.testing.assert_array_equal(drawn["right"], STRAIGHT[::2])
         np.testing.assert_array_equal(drawn["centre line"], lane.centre_line()[:, 1:3])
         pyplot.close(figure)
-
-    def test_where_there_is_none_the_cones_are(self):
-        import matplotlib
-
-        matplotlib.use("Agg")
-        from matplotlib import pyplot
-
         ax = conelane.Detector("clc").detect([[1.0, 2.0]], ORIGIN).plot()
         self.assertEqual([line.get_label() for line in ax.get_lines()], ["cones"])
         pyplot.close("all")

@@ -51,41 +51,31 @@ class Docstrings(unittest.TestCase):
 
 
 class Stubs(unittest.TestCase):
-    """_core.pyi lists what the module has, with the arguments that docstrings begin with."""
+    """_core.pyi, which is made of the docstrings, has every name, and what an attribute holds is of the type that it names."""
 
-    def setUp(self):
-        tree = ast.parse((SOURCES / "python/conelane/_core.pyi").read_text(encoding="utf-8"))
-        self.functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
-        self.classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    TYPES = {"float": float, "int": int, "bool": bool, "str": str, "List": list, "Dict": dict, "Tuple": tuple}
 
-    def test_names(self):
-        self.assertEqual({name for name in vars(conelane._core) if not name.startswith("_")} - {"version"},
-                         set(self.functions) | set(self.classes))
-        for name, node in self.classes.items():
-            members = {member.name for member in node.body if isinstance(member, ast.FunctionDef)}
-            real = {key for key in vars(getattr(conelane._core, name)) if not key.startswith("_")}
-            self.assertEqual(members - {"__init__"}, real, name)
-
-    def test_arguments(self):
-        def check(name, node, text):
-            said = ast.parse(f"def {text.strip().splitlines()[0]}: pass").body[0].args
-            stub = node.args
-            names = [[arg.arg for arg in args] for args in (stub.args, stub.kwonlyargs)]
-            if names[0][:1] == ["self"]:
-                names[0].pop(0)
-            if said.kwarg is None:  # **options are spelled out in the stub
-                self.assertEqual(names, [[arg.arg for arg in args] for args in (said.args, said.kwonlyargs)], name)
-                self.assertEqual([ast.dump(value) for value in stub.defaults + stub.kw_defaults if value],
-                                 [ast.dump(value) for value in said.defaults + said.kw_defaults if value], name)
-
-        for name, node in self.functions.items():
-            check(name, node, getattr(conelane._core, name).__doc__)
-        for name, node in self.classes.items():
-            for member in node.body:
-                if not isinstance(member, ast.FunctionDef) or member.decorator_list:
-                    continue
-                owner = getattr(conelane._core, name)
-                check(name, member, owner.__doc__ if member.name == "__init__" else getattr(owner, member.name).__doc__)
+    def test_attributes_are_of_their_types(self):
+        stubs = ast.parse(Path(conelane._core.__file__).with_name("_core.pyi").read_text(encoding="utf-8"))
+        named = {node.name: node for node in stubs.body if hasattr(node, "name")}
+        self.assertEqual(set(named), {name for name in vars(conelane._core) if not name.startswith("_")} - {"version"})
+        track, = conelane.load_tracks("generated:circle")
+        scene = conelane.generate_scenes(track, every_m=20.0)[0]
+        detector, planner = conelane.Detector("front"), conelane.Planner()
+        lane, plan = detector.detect_scene(scene), planner.update(scene.cones, scene.pose, 0.0)
+        for one in (track, track.boundaries, scene, detector, lane, lane.drivable(), conelane.score(scene, lane, track.boundaries), planner, plan,
+                    plan.answer, conelane.solve_rld(scene.cones, scene.pose)):
+            members = {node.name: node for node in named[type(one).__name__].body}
+            self.assertEqual(set(members) - {"__init__"}, {name for name in vars(type(one)) if not name.startswith("_")})
+            for name, node in members.items():
+                if node.decorator_list:
+                    text, value = ast.unparse(node.returns), getattr(one, name)
+                    self.assertTrue(value is not None or text.startswith("Optional["), f"{type(one).__name__}.{name}: {text}")
+                    kind = re.match(r"(?:Optional\[)?(?:NDArray\[(\w+)|(\w+))", text)
+                    if value is not None and kind[1]:
+                        self.assertEqual(str(value.dtype), kind[1], name)
+                    elif value is not None:
+                        self.assertIsInstance(value, self.TYPES.get(kind[2]) or getattr(conelane, kind[2]), name)
 
 
 class Pages(unittest.TestCase):

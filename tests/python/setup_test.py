@@ -20,7 +20,8 @@ class Jobs(unittest.TestCase):
             cmake.chmod(0o755)
             built = Path(folder, "build", "python", "conelane", "_core" + sysconfig.get_config_var("EXT_SUFFIX"))
             built.parent.mkdir(parents=True)
-            built.touch()
+            for file in (built, built.parent / "_core.pyi"):
+                file.touch()
             names = {key: value for key, value in os.environ.items() if key != "CMAKE_BUILD_PARALLEL_LEVEL"}
             subprocess.run([sys.executable, "-B", "setup.py", "-q", "build_ext", "--build-lib", folder], check=True,
                            cwd=SOURCES / "python", env={**names, "PATH": f"{folder}:{names['PATH']}",

@@ -40,39 +40,6 @@ const ProblemEdge& edge_of(const LaneGraphProblem& problem, std::size_t i, std::
                                  [&](const ProblemEdge& edge) { return edge.i == i && edge.j == j; });
 }
 
-/// If edges cost more the farther away they are, the lane begins later or not at all; if ends gain inside the
-/// view, it ends earlier.
-TEST(LearnedCosts, DecideWhichLaneIsBest) {
-    const Scene scene =
-        cones_at({{1, 1.75}, {4.2, 1.75}, {7.4, 1.75}, {1, -1.75}, {4.2, -1.75}, {7.4, -1.75}});
-    const LaneGraph whole{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
-    const LaneGraphProblem plain = make_problem(scene, {});
-    EXPECT_EQ(make_exhaustive_solver()->solve(plain, {}).lane_graph, whole);
-    // With 10 for each 30 m, the first two edges cost 10 * 3.1 / 30 - 1 > 0: the lane begins at the second
-    // cones. With 1 every edge still gains.
-    const RldParameters dear = with_weight(LearnedPart::edge, "distance", 10.0);
-    const LaneGraph later{{{1, 2}, {4, 5}}};
-    const RldReport begins_later = make_exhaustive_solver()->solve(make_problem(scene, dear), {});
-    EXPECT_EQ(begins_later.lane_graph, later);
-    EXPECT_NEAR(*begins_later.objective, 2.0 * (10.0 * std::hypot(5.8, 1.75) / 30.0 - 1.0), 1e-9);
-    const RldParameters cheap = with_weight(LearnedPart::edge, "distance", 1.0);
-    EXPECT_EQ(make_exhaustive_solver()->solve(make_problem(scene, cheap), {}).lane_graph, whole);
-    // With two more cones, and ends that gain by the remaining view, the lane ends at 7.4 m, while the plain
-    // one continues to 10.6 m.
-    Scene longer = scene;
-    longer.cones.push_back({6, {10.6, 1.75}});
-    longer.cones.push_back({7, {10.6, -1.75}});
-    const LaneGraph all{{{0, 1}, {1, 2}, {2, 6}, {3, 4}, {4, 5}, {5, 7}}};
-    EXPECT_EQ(make_exhaustive_solver()->solve(make_problem(longer, {}), {}).lane_graph, all);
-    const RldParameters ends = with_weight(LearnedPart::far_end, "in_view", -10.0);
-    const RldReport shorter = make_exhaustive_solver()->solve(make_problem(longer, ends), {});
-    EXPECT_EQ(shorter.lane_graph, whole);
-    // By hand: four edges at -1, and two ends whose gain depends on how far the farthest cones are beyond
-    // them.
-    const double in_view = (std::hypot(10.6, 1.75) - std::hypot(7.4, 1.75)) / 10.0;
-    EXPECT_NEAR(*shorter.objective, -4.0 - 2 * 10.0 * in_view, 1e-9);
-}
-
 TEST(LearnedCosts, MeasureWhatTheirNamesSay) {
     // Boundaries 3.6 m apart; cone 4 stands 0.6 m off the middle of the edge {0, 1}, inside the lane.
     const Scene scene = cones_at({{2, 1.8}, {6, 1.8}, {2, -1.8}, {6, -1.8}, {4, 1.2}});
@@ -101,26 +68,6 @@ TEST(LearnedCosts, MeasureWhatTheirNamesSay) {
     EXPECT_NEAR(near[place_of(LearnedPart::near_end, "behind")], 0.0, 1e-12);
     const auto far = features.far_end(1);
     EXPECT_NEAR(far[place_of(LearnedPart::far_end, "in_view")], 0.0, 1e-12);
-    // A turn over the top of a triangle of 2 m by 2 m with a cone at its centre.
-    const Scene roof = cones_at({{0, 0}, {2, 2}, {4, 0}, {2, 0.9}});
-    RldParameters any_turn = parameters;
-    any_turn.t_crit = 1e6;
-    any_turn.d_e = 2.8;
-    const LaneGraphProblem over = make_problem(roof, any_turn);
-    const LearnedFeatures of_roof(roof, over);
-    for (const ProblemTurn& turn : over.turns) {
-        if (turn.middle != 1) continue;
-        const ProblemEdge& e = over.edges[turn.edge_i];
-        const ProblemEdge& f = over.edges[turn.edge_k];
-        if (e.i + e.j + f.i + f.j != 0 + 1 + 1 + 2) continue;
-        const auto x = of_roof.turn(turn.edge_i, turn.edge_k, turn.middle, turn.angle_cost);
-        EXPECT_NEAR(x[place_of(LearnedPart::turn, "inside")], 1.0, 1e-12);
-        // Three cones on a circle of 2 m.
-        EXPECT_NEAR(x[place_of(LearnedPart::turn, "curvature")], 5.0 / 2.0, 1e-12);
-        EXPECT_NEAR(x[place_of(LearnedPart::turn, "unevenness")], 0.0, 1e-12);
-        return;
-    }
-    FAIL() << "there is no such turn";
 }
 
 /// Edge by edge, turn by turn, end by end; a turn never gains, an end never costs.
@@ -132,7 +79,7 @@ TEST(LearnedCosts, OfTheProblemAreThoseOfTheNetworks) {
         const Scene scene = tests::random_scene(seed, 12);
         RldParameters parameters;
         parameters.d_gap = 9.0;
-        parameters.w_n = 0.5;
+        parameters.near_end_weight = 0.5;
         const LaneGraphProblem plain = make_problem(scene, parameters);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7);
         const LearnedCosts& costs = *parameters.learned_costs;

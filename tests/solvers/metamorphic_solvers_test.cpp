@@ -103,8 +103,17 @@ void expect_same(const Solved& original, const Solved& changed, const Change& ch
 
 class SolverMetamorphic : public testing::TestWithParam<std::tuple<SolverCase, Change>> {};
 
+/// Scenes of another size have the same optimum if the lengths of the parameters change too.
+std::vector<Change> changes_and_scales() {
+    std::vector<Change> all = tests::changes();
+    all.push_back({"Quarter", [](Scene s) { return tests::scaled(std::move(s), 0.25); }});
+    all.push_back({"Threefold", [](Scene s) { return tests::scaled(std::move(s), 3.0); }});
+    return all;
+}
+
 TEST_P(SolverMetamorphic, FindsTheSameOptimum) {
     const auto& [tried, change] = GetParam();
+    const double factor = change.name == "Quarter" ? 0.25 : change.name == "Threefold" ? 3.0 : 1.0;
     const auto solver = tried.entry->make(tried.formulation);
     const std::uint64_t seeds = tried.formulation == Formulation::paper ? 12 : 24;
     std::size_t lanes = 0;
@@ -113,31 +122,14 @@ TEST_P(SolverMetamorphic, FindsTheSameOptimum) {
         // exhaustive takes at most nine cones, and one is added.
         const Scene scene = tests::on_grid(tests::random_scene(seed, 8));
         const Solved original = solve(*solver, scene, parameters_of(seed));
-        const Solved changed = solve(*solver, change.apply(scene), parameters_of(seed));
+        const Solved changed =
+            solve(*solver, change.apply(scene), with_lengths_scaled(parameters_of(seed), factor));
         expect_same(original, changed, change, tried.entry->has(SolverTrait::exact));
         if (original.report.lane_graph) ++lanes;
     }
     // The number of lanes that a heuristic finds is not compared.
     if (tried.entry->has(SolverTrait::exact)) {
         EXPECT_GE(lanes, seeds / 4);
-    }
-}
-
-class SolverScale : public testing::TestWithParam<SolverCase> {};
-
-TEST_P(SolverScale, FindsTheSameOptimumWithTheLengthsOfTheParameters) {
-    const auto solver = GetParam().entry->make(GetParam().formulation);
-    const std::uint64_t seeds = GetParam().formulation == Formulation::paper ? 12 : 24;
-    for (const double factor : {0.25, 3.0}) {
-        const Change change{"Scaled", [&](Scene s) { return tests::scaled(std::move(s), factor); }};
-        for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-            SCOPED_TRACE(testing::Message() << "seed " << seed << ", factor " << factor);
-            const Scene scene = tests::random_scene(seed, 8);
-            const Solved original = solve(*solver, scene, parameters_of(seed));
-            const Solved changed =
-                solve(*solver, change.apply(scene), with_lengths_scaled(parameters_of(seed), factor));
-            expect_same(original, changed, change, GetParam().entry->has(SolverTrait::exact));
-        }
     }
 }
 
@@ -160,13 +152,11 @@ TEST_P(PathPairMetamorphic, FindsTheSameOptimumAmongManyCones) {
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverMetamorphic,
                          testing::Combine(testing::ValuesIn(tests::solver_cases()),
-                                          testing::ValuesIn(tests::changes())),
+                                          testing::ValuesIn(changes_and_scales())),
                          [](const auto& test) {
                              return case_name(std::get<0>(test.param)) + "_" +
                                     std::string(std::get<1>(test.param).name);
                          });
-INSTANTIATE_TEST_SUITE_P(Registry, SolverScale, testing::ValuesIn(tests::solver_cases()),
-                         [](const auto& test) { return case_name(test.param); });
 INSTANTIATE_TEST_SUITE_P(Changes, PathPairMetamorphic, testing::ValuesIn(tests::changes()),
                          [](const auto& test) { return std::string(test.param.name); });
 

@@ -5,7 +5,9 @@
 #include "conelane/relaxation_solvers.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
@@ -103,12 +105,7 @@ TEST(Relaxations, AnswerLaneGraphsBetweenBoundAndOptimumAndClaimNoOptimality) {
 /// Two straight boundaries at the expected spacing and nothing else: four edges at -1 each, which is also the
 /// optimum of the linear relaxation.
 TEST(Relaxations, FindTheOnlyLane) {
-    Scene scene;
-    for (const double left_m : {1.5, -1.5}) {
-        for (const double ahead_m : {1.0, 4.2, 7.4}) {
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {ahead_m, left_m}});
-        }
-    }
+    const Scene scene = tests::six_cone_lane();
     const LaneGraph lane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
     for (const RldSolverEntry& entry : relaxation_solvers()) {
         const RldReport report = entry.make(Formulation::tight)->solve(make_problem(scene, {}), {});
@@ -121,12 +118,8 @@ TEST(Relaxations, FindTheOnlyLane) {
 
 /// The linear relaxation proves it; other heuristics do not have to.
 TEST(Relaxations, ProveThatTooFewConesHaveNoLane) {
-    Scene too_few;
-    for (const Point& position : {Point(4, 1.5), Point(7.2, 1.5), Point(4, -1.5)}) {
-        too_few.cones.push_back({static_cast<ConeId>(too_few.cones.size()), position});
-    }
-    Scene one_place;
-    for (ConeId id = 0; id < 8; ++id) one_place.cones.push_back({id, {5, 1}});
+    const Scene too_few = tests::cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}});
+    const Scene one_place = tests::cones_at(std::vector<Point>(8, {5, 1}));
     for (const RldSolverEntry& entry : relaxation_solvers()) {
         const std::unique_ptr<RldSolver> solver = entry.make(Formulation::tight);
         for (const Scene& scene : {Scene{}, too_few, one_place}) {
@@ -134,17 +127,6 @@ TEST(Relaxations, ProveThatTooFewConesHaveNoLane) {
             EXPECT_EQ(report.status, SolveStatus::infeasible)
                 << entry.name << ", " << scene.cones.size() << " cones: " << report.message;
         }
-    }
-}
-
-TEST(Relaxations, StopAtTheTimeLimit) {
-    for (const RldSolverEntry& entry : relaxation_solvers()) {
-        const LaneGraphProblem problem = make_problem(tests::random_scene(1, 16), {});
-        SolveLimits limits;
-        limits.time_limit_ms = 0.0;
-        EXPECT_EQ(entry.make(Formulation::tight)->solve(problem, {.limits = limits}).status,
-                  SolveStatus::stopped)
-            << entry.name;
     }
 }
 

@@ -142,7 +142,7 @@ TEST_P(SolverRobustness, TooFewConesForALane) {
 
 TEST_P(SolverRobustness, AllConesAtOnePlace) {
     for (const Point& place : {Point(0, 0), Point(5, 1), Point(40, 0), Point(1e6, -1e6)}) {
-        SCOPED_TRACE(testing::Message() << "at " << place.transpose());
+        SCOPED_TRACE(testing::Message() << "at " << place.x() << ", " << place.y());
         expect_no_lane(solver->solve(problem_of(cones_at(std::vector<Point>(8, place))), {}));
     }
 }

@@ -21,7 +21,7 @@ set(python_depends_on model solvers graph_search detectors evaluation python)
 set(playground_depends_on model solvers graph_search detectors evaluation playground)
 set(tests_depends_on model solvers graph_search detectors evaluation experiments program tests)
 # Each folder, and each file that stands beside folders, without its ending: what stands later may include what stands before.
-set(layers_of_solvers/path_pair search_clock search_tuning path_pair_options graph bound primal frontier search path_pair_solver)
+set(layers_of_solvers/path_pair search_clock path_pair_options graph bound primal frontier search path_pair_solver)
 set(layers_of_evaluation input_error seeded_random world formats scoring proofs outside)
 set(layers_of_experiments progress training tuning methods comparison options cross_check cross_validation instances
                           studies race report benchmarks examples)

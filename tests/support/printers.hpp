@@ -17,6 +17,10 @@ requires(std::is_enum_v<Named>&& requires(Named value) {
     *out << to_string(value);
 }
 
+inline void PrintTo(const Point& point, std::ostream* out) {
+    *out << '(' << point.x() << ", " << point.y() << ')';
+}
+
 inline void PrintTo(const Edge& edge, std::ostream* out) {
     *out << edge.i << '-' << edge.j;
 }

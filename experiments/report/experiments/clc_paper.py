@@ -29,13 +29,13 @@ def _table_by_rate(name, results, published, samples, shares, columns, note=""):
     """For each rate of ours or the paper's: the paper's row first, then one of each method. `shares` are of the scores of a method."""
     def method(row):
         return method_cell(results, row["sample"].method, row["sample"].label) if row["sample"] else text("CLC paper")
-    rows, printed = [], {round(row["rate"], 6): {key: value / 100 for key, value in row.items()} for row in published["clc"]}
+    rows, printed = [], {round(row["false_positive_rate"], 6): {key: value / 100 for key, value in row.items()} for row in published["clc"]}
     for rate in sorted({round(rate, 6) for sample in samples for rate in sample.rate} | set(printed)):
         rows += [printed[rate] | {"sample": None, "rate": rate}] if rate in printed else []
         rows += [shares(part) | {"sample": sample, "rate": rate} for sample in samples
                  if len(part := sample.where(np.abs(sample.rate - rate) < 1e-6))]
-    return table(name, [Column("method", method, "text"), column("false positives %", percent, "rate"), *(column(title, percent, key) for key, title in columns.items())], rows,
-                 note=note, is_published=lambda row: row["sample"] is None)
+    return table(name, [Column("method", method, "text"), column("false positives %", percent, "rate"),
+                        *(column(title, percent, key) for key, title in columns.items())], rows, note=note, is_published=lambda row: row["sample"] is None)
 
 
 @Experiment
@@ -86,7 +86,7 @@ def clc_table_2(results, published):
 @clc_table_2.judged(_of_paper(_enumerating))
 def _as_often_complete(sample, published):
     """Complete at least as often as in the paper, without false positives."""
-    needed, clean = next(row["complete"] for row in published["clc"] if row["rate"] == 0.0), sample.at(0.0)
+    needed, clean = next(row["complete"] for row in published["clc"] if row["false_positive_rate"] == 0.0), sample.at(0.0)
     if len(clean):
         share = 100 * float(np.mean(clean.complete == 1.0))
         return share >= needed, f"{share:.1f} %, the paper {needed:g} %"

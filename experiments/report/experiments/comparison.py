@@ -9,7 +9,7 @@ from ..charts import (THIN, Curve, box_plot, by_rate, chart, counts_of_points, d
 from ..experiment import Experiment
 from ..load import CATEGORIES, CAUSES, Missing
 from ..measures import headline_measure, median_interval, share_and_interval
-from ..rows import CATEGORY_NOTE, attributes, condition_column, keys, note_on_limit, note_on_training, part
+from ..rows import CATEGORY_NOTE, condition_column, note_on_limit, note_on_training, part, rows_table
 from ..summaries import median, quantile
 from ..tables import Column, column, count, degrees, fixed, method_cell, method_column, milliseconds, percent, table, text
 from ..theme import MUTED, leaders_axis, method_color, method_legend, method_style
@@ -60,12 +60,11 @@ def quality(results, published):
              "High is good: all four checks of the RLD paper pass, compared with the ground truth of the method's own cone set.")):
         if name == "success" or any(sample.has(name) for sample in under.samples):
             figures.append(drawn(f"{name}-by-rate", f"{caption} {bars}{alone}", by_rate_figure(under, what, name), title))
-    columns = keys(results) + [
+    columns = [
         column(title, percent, key, interval=lambda row, name=name: share_and_interval(part(results, row), name)[1])
         for name, key, title in _QUALITY] + [column("solved %", percent, "solved_share"), column("complete %", percent, "complete_share")]
-    return group(figures, method_key(results, results.samples)) + table(
-        "quality", columns, results.rows, attributes=attributes,
-        note="Small: 95 % interval. Solved: within 0.4 s proven optimal, or proven to have no lane. Complete: the enumeration came to "
+    return group(figures, method_key(results, results.samples, "quality")) + rows_table(
+        "quality", results, columns, "Small: 95 % interval. Solved: within 0.4 s proven optimal, or proven to have no lane. Complete: the enumeration came to "
              f"its end.{note_on_training(results)}")
 
 
@@ -80,11 +79,11 @@ def steering(results, published):
     Command: conelane compare --out RESULTS"""
     if not any("lateral_median_m" in row or "unsteady_share" in row for row in results.rows):
         raise Missing("no lane was compared with a true centre line.")
-    return table("steering", keys(results) + [
+    return rows_table("steering", results, [
         column("usable %", percent, lambda row: row.get("usable_share")),
         column("lateral median m", fixed, "lateral_median_m", digits=2), column("lateral p95 m", fixed, "lateral_p95_m", digits=2),
         column("heading median °", degrees, "heading_median_rad"), column("heading p95 °", degrees, "heading_p95_rad"),
-        column("unsteady %", percent, "unsteady_share")], results.rows, attributes=attributes)
+        column("unsteady %", percent, "unsteady_share")])
 
 
 def _bins(rows):
@@ -139,12 +138,12 @@ def calibration(results, published):
         column("mean confidence %", percent, lambda row: row["confidence"]), column("usable %", percent, lambda row: row["usable"]),
         column("lanes", count, lambda row: row["lanes"])], bins, caption="Lanes of about the same confidence, all rates and ranges together",
         attributes=lambda row: {"method": row["method"], "condition": row["condition"]}) if bins else ""
-    columns = keys(shown) + [column("lanes", count, lambda row: sum(found for found, _, _ in row["calibration"].get("bins", ())) or None)] + [
+    columns = [column("lanes", count, lambda row: sum(found for found, _, _ in row["calibration"].get("bins", ())) or None)] + [
         column(title, percent, lambda row, key=key: row["calibration"].get(key), digits=2) for key, title in (
             ("error", "confidence error %"), ("sure_share", "sure %"), ("usable_where_sure_share", "usable where sure %"),
             ("trusted_share", "trusted %"), ("right_where_trusted_share", "right where trusted %"))]
-    return group(figures, method_key(results, [sample for sample in results.samples if sample.method in methods])) + of_bins + table(
-        "calibration-table", columns, shown.rows, attributes=attributes)
+    return group(figures, method_key(results, [sample for sample in results.samples if sample.method in methods], "calibration")) + of_bins + rows_table(
+        "calibration-table", shown, columns)
 
 
 def latency_figure(results):
@@ -173,7 +172,7 @@ def latency(results, published):
 
     def time(title, key, limit_ms=np.inf):
         return column(title, milliseconds, lambda row: row["latency_ms"].get(key), measure=key, limit_ms=limit_ms)
-    columns = keys(results) + [column("median ms", milliseconds, lambda row: row["latency_ms"]["median"], measure="median",
+    columns = [column("median ms", milliseconds, lambda row: row["latency_ms"]["median"], measure="median",
                                       interval=lambda row: median_interval(part(results, row).latency, part(results, row).track))] + [
         time(title, key) for title, key in (("mean ms", "mean"), ("standard deviation ms", "standard_deviation"),
                                             ("geometric mean ms", "shifted_geometric_mean"))] + [
@@ -184,9 +183,8 @@ def latency(results, published):
               f"answers. {counts_of_points(under, under.samples)}{alone}", latency_figure(under), "Latency by false-positive rate"),
         drawn("latency", "A tick (the maximum) right of the line: at least one answer was too late for real time. Boxes: quartiles and "
               f"median; whiskers to the 1st and 99th percentile.{alone}", boxes, "Latency over all rates and ranges")
-    ], method_key(results, under.samples)) + table(
-        "latencies", columns, results.rows, attributes=attributes,
-        note=f"Geometric mean: shifted by 1 ms. Small: 95 % interval, tracks resampled.{note_on_limit(results)}")
+    ], method_key(results, under.samples, "latencies")) + rows_table(
+        "latencies", results, columns, f"Geometric mean: shifted by 1 ms. Small: 95 % interval, tracks resampled.{note_on_limit(results)}")
 
 
 @Experiment
@@ -199,11 +197,10 @@ def outcomes(results, published):
     method; the checker recomputes every constraint, objective and bound from the scene.
     Source: categories of the CLC paper, VIII-D; the checker is this project's.
     Command: conelane compare --out RESULTS"""
-    return table("categories", keys(results) + [
+    return rows_table("categories", results, [
         column(title, percent, lambda row, key=key: row["share"].get(key), measure=key) for key, title in CATEGORY_TITLES.items()] + [
         column("errors", count, lambda row: int(np.sum(part(results, row).status == "error"))),
-        column("checker accepts", count, lambda row: int(np.nansum(part(results, row).checked)) or None)],
-        results.rows, attributes=attributes, note=CATEGORY_NOTE)
+        column("checker accepts", count, lambda row: int(np.nansum(part(results, row).checked)) or None)], CATEGORY_NOTE)
 
 
 CATEGORY_TITLES = dict(zip(CATEGORIES, ("ground truth %", "near %", "too short %", "diverging ≥ 20 m %", "diverging < 20 m %", "none %")))

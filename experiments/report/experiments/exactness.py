@@ -9,7 +9,7 @@ from ..charts import by_rate, chart, drawn, group, series
 from ..experiment import Experiment
 from ..load import SUCCESSES, Missing
 from ..records import NUMBER, TEXT, WHOLE, YES_OR_NO, InputError, read_json
-from ..summaries import median, percent_label, quantile
+from ..summaries import is_close, median, percent_label, quantile
 from ..tables import column, count, fixed, milliseconds, percent, table, text
 from ..theme import percent_axis
 
@@ -120,17 +120,6 @@ def optimality(results, published):
              f"resampled.{results.origin(rows[0])}")
 
 
-_CLOSE = 0.01
-
-
-def _is_close(row):
-    if row["proven"]:
-        return True
-    if "objective" not in row or "best_known" not in row:
-        return False
-    return row["objective"] - row["best_known"] <= _CLOSE * max(1.0, abs(row["best_known"]))
-
-
 def _grouped(rows, key):
     """{key: rows}, in order of the keys."""
     found = {}
@@ -161,7 +150,7 @@ def anytime(results, published):
     origin, by_limit = results.origin(rows[0]).strip(), _grouped(rows, lambda row: row["limit_ms"])
     first = min(by_limit)
     shares = _curves(by_limit, ("proven", lambda rows: 100.0 * np.mean([row["proven"] for row in rows])),
-                     ("lane graph within 1 %", lambda rows: 100.0 * np.mean(list(map(_is_close, rows)))),
+                     ("lane graph within 1 %", lambda rows: 100.0 * np.mean(list(map(is_close, rows)))),
                      xlabel="limit [ms]", ylabel="scenes [%]", log="x", scale=percent_axis)
     # Scenes that are not solved within the first limit: the same scenes at every limit.
     hard = {row["scene"] for row in by_limit[first] if not row["proven"]}

@@ -126,9 +126,9 @@ def rld_fig_7(results, published):
     Command: conelane compare --tracks generated:straight generated:circle generated:curvy --nearest 12 --fp
     0,0.1667,0.2857,0.375,0.4444,0.5 --out RESULTS/topologies"""
     samples, present = _on_topologies(results, published)
-    paper = [(100 * row["rate"], row["inaccurate"]) for row in published["rld"]]
+    paper = [(100 * row["false_positive_rate"], row["inaccurate"]) for row in published["rld"]]
     most = max(share for _, share in paper + [point for sample in samples for topology in present for point in _inaccurate(sample, topology)])
-    rates = sorted({round(rate, 4) for sample in samples for rate in sample.rate} | {round(row["rate"], 4) for row in published["rld"]})
+    rates = sorted({round(rate, 4) for sample in samples for rate in sample.rate} | {round(row["false_positive_rate"], 4) for row in published["rld"]})
     return group([
         drawn(f"rld-fig-7-{topology}", "Below the stars, fewer lanes are inaccurate than in the paper. The paper's figures are for all topologies "
               "together; at 50 % it gives a bound.",
@@ -140,7 +140,7 @@ def rld_fig_7(results, published):
 @rld_fig_7.judged(lambda results, published: [(sample.label, sample) for sample in _on_topologies(results, published)[0]])
 def _few_are_inaccurate(sample, published):
     """No topology has more inaccurate lanes than the paper's bound, at any rate up to its highest."""
-    bound, highest = max((row["inaccurate"], row["rate"]) for row in published["rld"])
+    bound, highest = max((row["inaccurate"], row["false_positive_rate"]) for row in published["rld"])
     shares = [(share, topology, rate) for topology in _TOPOLOGIES for rate, share in _inaccurate(sample, topology) if rate <= highest + 1e-9]
     if shares:
         most, topology, rate = max(shares, key=lambda found: found[0])

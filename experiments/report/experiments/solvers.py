@@ -5,7 +5,7 @@ import numpy as np
 from .. import measures
 from ..charts import chart, drawn, group, series
 from ..experiment import Experiment
-from ..load import Missing
+from ..load import Missing, Sample
 from ..records import NUMBER, TEXT, WHOLE
 from ..summaries import median, quantile
 from ..tables import Cell, Column, column, count, fixed, milliseconds, percent, short, table, text
@@ -13,27 +13,17 @@ from ..theme import series_style
 from .speed import profile_figure, ratio
 
 FILE = "backends.jsonl"
-AGREEMENT = 1e-6
 _WARM = " warm"
 _SOLVE = {"scene": TEXT, "track": TEXT, "nearest": WHOLE, "backend": TEXT, "status": TEXT, "nodes": WHOLE, "latency_ms": NUMBER}
 
 
-class Solves:
-    """The solves of one backend at one cone-set size, columns as arrays of one length."""
-
-    def __init__(self, nearest, backend, rows):
-        self.nearest, self.backend, self.label = nearest, backend, backend
-        for key in ("scene", "track", "status"):
-            setattr(self, key, np.array([row[key] for row in rows], dtype=object))
-        self.objective = np.array([row.get("objective", np.nan) for row in rows], dtype=float)
-        self.nodes = np.array([row["nodes"] for row in rows], dtype=float)
-        self.latency = np.array([row["latency_ms"] for row in rows], dtype=float)
-        self.is_warm = backend.endswith(_WARM)
-
-    @property
-    def is_decided(self):
-        """Optimum or infeasibility proven."""
-        return np.isin(self.status, ("optimal", "infeasible"))
+def _solves(nearest, backend, rows):
+    """The solves of one backend at one cone-set size."""
+    columns = {key: np.array([row[key] for row in rows], dtype=object) for key in ("scene", "track", "status")}
+    columns |= {key: np.array([row.get(of, np.nan) for row in rows], dtype=float)
+                for key, of in (("objective", "objective"), ("nodes", "nodes"), ("latency", "latency_ms"))}
+    # Decided: optimum or infeasibility proven.
+    return Sample(backend, nearest, columns | {"is_decided": np.isin(columns["status"], ("optimal", "infeasible"))})
 
 
 def _read(results):
@@ -44,7 +34,7 @@ def _read(results):
     rows = {}
     for row in stored:
         rows.setdefault((row["nearest"], row["backend"]), []).append(row)
-    return [Solves(*key, of_backend) for key, of_backend in rows.items()], results.origin(stored[0])
+    return [_solves(*key, of_backend) for key, of_backend in rows.items()], results.origin(stored[0])
 
 
 def _size_name(nearest):
@@ -57,17 +47,10 @@ def _size(row, *more):
     return Cell(" ".join((_size_name(row["nearest"]), *more)).strip(), row["nearest"] or 10**6)
 
 
-def disagreements(solves):
-    """Scenes of one size in which two backends prove different optima, or one proves that there is none where
-    another proves an optimum; and the number of scenes that two of them decided."""
-    found = {}
-    for one in solves:
-        for scene, status, objective in zip(one.scene, one.status, one.objective):
-            if status in ("optimal", "infeasible"):
-                found.setdefault(scene, []).append(objective if status == "optimal" else np.inf)
-    shared = [values for values in found.values() if len(values) > 1]
-    return sum(not (max(values) == min(values) or max(values) - min(values) <= AGREEMENT) for values in shared), len(
-        shared)
+def _proven(one):
+    """The proven optima by scene; infinite where it is proven that there is no lane graph."""
+    return {scene: objective if status == "optimal" else np.inf
+            for scene, status, objective in zip(one.scene[one.is_decided], one.status[one.is_decided], one.objective[one.is_decided])}
 
 
 @Experiment
@@ -81,12 +64,12 @@ def exact_backends(results, published):
     Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
     Command: conelane study backends --sizes 12,20,30,60,all --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl"""
     solves, origin = _read(results)
-    cold = [one for one in solves if not one.is_warm]
+    cold = [one for one in solves if not one.method.endswith(_WARM)]
     figures, agreement = [], []
     for size in dict.fromkeys(one.nearest for one in cold):
         of_size = [one for one in cold if one.nearest == size]
-        agreement.append("n = {}: {} of {} scenes".format(_size_name(size), *disagreements(of_size)))
-        figure, scenes = profile_figure(of_size, lambda i, _: series_style(i), lambda one: one.is_decided)
+        agreement.append("n = {}: {} of {} scenes".format(_size_name(size), *measures.disagreements(map(_proven, of_size))))
+        figure, scenes = profile_figure(of_size, lambda i, _: series_style(i), lambda one: one.is_decided, "method")
         if len(of_size) > 1 and figure:
             figures.append(drawn(f"backends-profile-{_size_name(size)}", "The upper left curve is the fastest backend on most scenes. Share of "
                                  f"{scenes} scenes proven (optimum or no lane) within a multiple of the fastest backend's time.", figure,
@@ -95,8 +78,8 @@ def exact_backends(results, published):
     def time(title, of, **options):
         return column(title, milliseconds, lambda one: of(one.latency), **options)
     return group(figures) + table("backends", [
-        Column("n", lambda one: _size({"nearest": one.nearest})), column("backend", text, lambda one: one.backend),
-        column("scenes", count, lambda one: len(one.scene)), column("proven %", percent, lambda one: one.is_decided.mean()),
+        Column("n", lambda one: _size({"nearest": one.nearest})), column("backend", text, lambda one: one.method),
+        column("scenes", count, lambda one: len(one)), column("proven %", percent, lambda one: one.is_decided.mean()),
         column("errors", count, lambda one: int(np.sum(one.status == "error"))),
         time("median ms", median, interval=lambda one: measures.median_interval(one.latency, one.track)), time("mean ms", np.mean),
         time("standard deviation ms", lambda latency: latency.std(ddof=1) if len(latency) > 1 else 0.0),
@@ -121,15 +104,15 @@ def warm_start(results, published):
     except Missing:
         solves, origin = [], ""
     rows = []
-    for warm in (one for one in solves if one.is_warm):
-        start = next((one for one in solves if (one.nearest, one.backend + _WARM) == (warm.nearest, warm.backend)), None)
+    for warm in (one for one in solves if one.method.endswith(_WARM)):
+        start = next((one for one in solves if (one.nearest, one.method + _WARM) == (warm.nearest, warm.method)), None)
         found = measures.latency_ratio(warm, start) if start else None
         if found:
             rows.append({"warm": warm, "cold": start, "ratio": found})
     if not rows:
         raise Missing("no backend was run with and without a start.")
     return table("warm-start", [
-        column("n", count, lambda row: row["warm"].nearest), column("backend", text, lambda row: row["cold"].backend),
+        column("n", count, lambda row: row["warm"].nearest), column("backend", text, lambda row: row["cold"].method),
         ratio("time ratio", lambda row: row["ratio"]), column("nodes without", fixed, lambda row: row["cold"].nodes.mean()),
         column("nodes with", fixed, lambda row: row["warm"].nodes.mean()), column("scenes", count, lambda row: row["ratio"][2])],
         rows, note=f"Small: 95 % interval, tracks resampled.{origin}")

@@ -11,7 +11,7 @@ from ..charts import THIN, Curve, chart, drawn, group, series, time_rules, with_
 from ..experiment import Experiment
 from ..load import Missing
 from ..records import NUMBER, TEXT, WHOLE, YES_OR_NO, InputError, read_json, read_lines, require_all
-from ..summaries import median, percent_label, quantile
+from ..summaries import median, percent_label, quantile, race_measures
 from ..tables import Cell, Column, column, count, fixed, method_cell, milliseconds, percent, table, text
 from ..theme import method_style, percent_axis
 
@@ -113,7 +113,7 @@ def paired_latency(results, published):
         column("scenes of both", count, lambda row: row["ratio"][2])], rows, note="Small: 95 % interval.")
 
 
-def profile_figure(solves, style_of, is_solved):
+def profile_figure(solves, style_of, is_solved, label="label"):
     """Of samples, or solves of backends, on the scenes that all have; also the number of these. None where there are none."""
     scenes = sorted(set.intersection(*(set(one.scene) for one in solves)))
     if not scenes:
@@ -123,7 +123,7 @@ def profile_figure(solves, style_of, is_solved):
     finite = ratios[np.isfinite(ratios)]
     most = max(2.0, finite.max() if len(finite) else 2.0)
     places = np.geomspace(1.0, most, 200)
-    curves = [Curve(one.label, np.column_stack([places, 100 * np.searchsorted(ratios[:, i], places, side="right") / len(scenes)]),
+    curves = [Curve(getattr(one, label), np.column_stack([places, 100 * np.searchsorted(ratios[:, i], places, side="right") / len(scenes)]),
                     style_of(i, one), "steps") for i, one in enumerate(solves)]
     figure, axes = chart(curves, "time / fastest method's time on the same scene", "scenes solved [%]", log="x", ylim=(-2, 103))
     axes.set_xticks([tick for tick in ((1, 2, 5, 10, 20, 50, 100) if most <= 200 else 10.0 ** np.arange(7)) if tick <= most])
@@ -224,43 +224,21 @@ def race(results, published):
     Source: this project.
     Command: conelane race --tracks TRACKS --methods front,clc --fp 0,0.3,0.5 --out RESULTS/race"""
     run, of_driver = _read_races(results)
-    rows = [{"method": method, "rate": rate, "races": races} for (method, rate), races in of_driver.items()]
-
-    def of_races(title, show, value, **options):
-        return column(title, show, lambda row: value(row["races"]), **options)
-
-    def known(races, key):
-        return [race[key] for race in races if race.get(key) is not None]
-
-    def total(races, key):
-        return sum(race[key] for race in races)
-
-    def finished(races):
-        return np.mean([race["finished"] for race in races])
-
-    def median_of(key):
-        return lambda races: median(known(races, key)) if known(races, key) else None
-
-    def of_frames(key):
-        return lambda races: total(races, key) / max(1, total(races, "frames"))
+    rows = [{"method": method, "rate": rate} | race_measures(races) for (method, rate), races in of_driver.items()]
     told = ", ".join(f"{name} {run[key]}" for name, key in (
         ("condition", "condition"), ("mission", "mission"), ("laps", "laps"), ("sight in m", "range_m"),
         ("m/s", "speed_mps"), ("latency in ms", "latency_ms"), ("fault", "fault")) if run.get(key) not in (None, ""))
     tracks = len({race["track"] for races in of_driver.values() for race in races})
     note = f"{tracks} courses; {told}.{results.origin(run)}"
-    curves = series([(method, sorted((100 * row["rate"], 100 * finished(row["races"])) for row in rows if row["method"] == method))
+    curves = series([(method, sorted((100 * row["rate"], 100 * row["finished"]) for row in rows if row["method"] == method))
                      for method in dict.fromkeys(row["method"] for row in rows)])
     return table("race-table", [
         column("method", text, lambda row: row["method"]),
         column("false positives %", lambda rate: Cell(percent_label(rate), rate), lambda row: row["rate"]),
-        of_races("races", count, len), of_races("finished %", percent, finished),
-        of_races("m to departure", fixed, median_of("departure_m"), digits=0),
-        of_races("cones hit a lap", fixed, lambda races: np.mean(
-            [race["cones_hit"] / max(1, race["finished_laps"] + (not race["finished"])) for race in races]), digits=2),
-        of_races("lateral p95 m", fixed, median_of("lateral_error_p95_m"), digits=2),
-        of_races("no path %", percent, of_frames("frames_without_path"), digits=2),
-        of_races("old path %", percent, lambda races: total(races, "old_path_s") / max(1e-9, total(races, "time_s")), digits=2),
-        of_races("unsteady %", percent, lambda races: np.mean(found) if (found := known(races, "unsteady_share")) else None),
-        of_races("wrong path %", percent, of_frames("wrong_unflagged"), digits=2)], rows, note=note) + group([
+        *(column(title, show, lambda row, key=key: row[key], **digits) for title, show, key, digits in (
+            ("races", count, "races", {}), ("finished %", percent, "finished", {}), ("m to departure", fixed, "departure_m", {"digits": 0}),
+            ("cones hit a lap", fixed, "hit_a_lap", {"digits": 2}), ("lateral p95 m", fixed, "lateral_error_p95_m", {"digits": 2}),
+            ("no path %", percent, "without_path", {"digits": 2}), ("old path %", percent, "old_path", {"digits": 2}),
+            ("unsteady %", percent, "unsteady", {}), ("wrong path %", percent, "wrong", {"digits": 2})))], rows, note=note) + group([
             drawn("race-finished", f"High is good: share of races that were finished. {note}",
                   chart(curves, "false positives [%]", "races finished [%]", scale=percent_axis), "Races finished")]) + _replay(results)

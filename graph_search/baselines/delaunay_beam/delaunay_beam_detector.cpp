@@ -1,6 +1,7 @@
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 
 #include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
+#include "graph_search/shared/moments.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "model/geometry.hpp"
 
@@ -42,23 +43,6 @@ constexpr std::size_t kMaxBeamWidth = 10'000;
 constexpr double kNoDirection_m = 0.5;
 /// For SearchBudget::spend.
 constexpr std::size_t kWorkPerNode = 40;
-
-/// Count, sum and sum of squares of numbers.
-struct Moments {
-    double count = 0.0;
-    double sum = 0.0;
-    double squares = 0.0;
-
-    void add(double value) {
-        count += 1.0;
-        sum += value;
-        squares += value * value;
-    }
-    [[nodiscard]] double mean() const { return sum / count; }
-    [[nodiscard]] double variance() const {
-        return count > 0.0 ? std::max(0.0, squares / count - mean() * mean()) : 0.0;
-    }
-};
 
 /// A path's end: the edge crossed last.
 struct Node {

@@ -28,8 +28,7 @@ struct Optimality {
     bool optimal;  ///< the gap is within the requested tolerance
 };
 
-/// A lane that an enumerating detector met, and its iteration; or one of the best lanes of a ranking
-/// detector, and its rank, from 1.
+/// A lane that a search met, and the iteration that met it; of a detector that ranks lanes, the rank, from 1.
 struct LaneCandidate {
     Lane lane;
     std::int64_t iteration;
@@ -42,10 +41,12 @@ struct Enumeration {
     std::vector<LaneCandidate> candidates;  ///< in the order met, or best first; see keep_candidates
 };
 
-/// A lane found among more cones than the cone set, before it was cut to the cone set.
-struct UncutLane {
-    Lane lane;
-    std::optional<Optimality> optimality;
+/// What an optimising detector has solved, where that is not the lane of its answer by its own parameters. It
+/// is for those who check the claims of the detector.
+struct SolvedLane {
+    Lane lane;                                  ///< before it was cut to the cone set
+    std::optional<Optimality> optimality = {};  ///< of this lane
+    std::optional<double> d_near_m = {};        ///< by which it is feasible, if not that of the parameters
 };
 
 /// Cones at most this far apart [m] are one cone that a map holds twice: the smallest cone of the rules is
@@ -75,12 +76,10 @@ struct LaneAnswer {
     /// With a confidence it follows from probabilities. Without a confidence it follows a rule: as far as
     /// both boundaries were seen without a gap, and 10 m at most.
     std::optional<double> trusted_m;
-    std::optional<Optimality> optimality;  ///< of `lane` itself; absent if it was cut
-    std::optional<UncutLane> uncut;        ///< if `lane` was cut; not stored in files
-    /// Of RLD: the d_near by which the lane is feasible, if not that of the parameters; not stored in files.
-    std::optional<double> other_d_near_m;
+    std::optional<Optimality> optimality;  ///< of `lane` itself
+    std::optional<SolvedLane> solved;      ///< absent if that is `lane`, by the detector's own parameters
     std::optional<Enumeration> enumeration;
-    std::vector<MergedCone> merged;  ///< by `cone`; empty if no cone is doubled; not stored in files
+    std::vector<MergedCone> merged;  ///< by `cone`; empty if no cone is doubled
 };
 
 struct DetectionLimits {

@@ -41,14 +41,15 @@ struct RldParameters {
     bool use_confidence = false;   ///< an edge's benefit is w_b times the confidences of its two cones
     bool forbid_crossing = false;  ///< no two edges cross; (7) forbids most crossings already
 
-    // Extras of this project, off by default: costs of a lane's shape, see shape_costs.hpp.
-    double w_u = 0.0;      ///< weight of uneven spacing
-    double w_v = 0.0;      ///< weight of the facing cost
-    double w_n = 0.0;      ///< benefit of a near endpoint half a lane beside the car's axis
-    double d_w = 3.6;      ///< expected width of the lane [m]
-    double d_v = 2.7;      ///< facing threshold [m]
-    double theta_v = 0.4;  ///< facing angle threshold [rad]
-    double d_l = 3.0;      ///< facing length threshold [m]
+    // Extras of this project, off by default: costs of a lane's shape, see shape_costs.hpp. The symbols are
+    // those of model/formulation.md and the keys of files.
+    double unevenness_weight = 0.0;  ///< w_u, of uneven spacing
+    double facing_weight = 0.0;      ///< w_v, of the facing cost
+    double near_end_weight = 0.0;    ///< w_n, benefit of a near endpoint half a lane beside the car's axis
+    double lane_width_m = 3.6;       ///< d_w, expected width of the lane
+    double facing_distance_m = 2.7;  ///< d_v, facing threshold
+    double facing_angle_rad = 0.4;   ///< theta_v, facing angle threshold
+    double facing_length_m = 3.0;    ///< d_l, facing length threshold
 
     // Edges over gaps, where a cone of a boundary is missing; off by default.
     double d_gap = 0.0;      ///< largest length of an edge that s_crit forbids [m]
@@ -58,8 +59,8 @@ struct RldParameters {
     double d_side = 0.0;  ///< a near endpoint is nearer to the car's axis than this [m]; off at 0
 
     // An edge joins cones that are among the nearest of each other, seen from one of them; off at 0.
-    double k_edge = 0.0;  ///< for one end of an edge, fewer cones than this are nearer than its other end
-    double k_gap = 0.0;   ///< the same for an edge over a gap
+    double nearest_of_edge = 0.0;  ///< k_edge: for one end, fewer cones than this are nearer than the other
+    double nearest_of_gap = 0.0;   ///< k_gap: the same for an edge over a gap
 
     /// Costs from learned_costs.hpp, added to those above; none by default. Never changed once it is here.
     std::shared_ptr<const LearnedCosts> learned_costs = {};

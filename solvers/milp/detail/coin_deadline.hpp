@@ -16,13 +16,14 @@ namespace conelane::detail {
 /// so a search without one is known to be a proof.
 struct DeadlineWatch {
     Deadline deadline;
-    bool struck = false;  ///< a part of the solve was interrupted
+    bool interrupted = false;  ///< a part of the solve was interrupted
     /// CBC's lower bound before any relaxation was interrupted.
     double bound = -std::numeric_limits<double>::infinity();
 
-    bool strikes() {
-        struck = struck || deadline.passed();
-        return struck;
+    /// Whether to stop now, which is recorded.
+    bool must_stop() {
+        interrupted = interrupted || deadline.passed();
+        return interrupted;
     }
 };
 
@@ -32,7 +33,7 @@ class ClpDeadline : public ClpEventHandler {
     explicit ClpDeadline(DeadlineWatch* watch) : watch_(watch) {}
     int event(Event which) override {
         const bool may_stop = which == endOfIteration || which == endOfFactorization;
-        return may_stop && watch_->strikes() ? 1 : -1;
+        return may_stop && watch_->must_stop() ? 1 : -1;
     }
     ClpEventHandler* clone() const override { return new ClpDeadline(*this); }
 
@@ -45,10 +46,10 @@ class CbcDeadline : public CbcEventHandler {
   public:
     explicit CbcDeadline(DeadlineWatch* watch) : watch_(watch) {}
     CbcAction event(CbcEvent which) override {
-        if (which == node && !watch_->struck && model_ != nullptr) {
+        if (which == node && !watch_->interrupted && model_ != nullptr) {
             watch_->bound = std::max(watch_->bound, model_->getBestPossibleObjValue());
         }
-        return watch_->strikes() ? stop : noAction;
+        return watch_->must_stop() ? stop : noAction;
     }
     CbcEventHandler* clone() const override { return new CbcDeadline(*this); }
 

@@ -48,8 +48,13 @@ void write_all(int file, std::span<const std::byte> bytes) {
 void answer(int file, const MilpReport& report, bool out_of_memory) {
     const auto point = std::as_bytes(std::span(report.point));
     const auto message = std::as_bytes(std::span(report.message));
-    const Trailer trailer{report.status, report.stopped_by, report.bound, report.nodes,
-                          point.size(),  message.size(),    out_of_memory};
+    const Trailer trailer{.status = report.status,
+                          .stopped_by = report.stopped_by,
+                          .bound = report.bound,
+                          .nodes = report.nodes,
+                          .point_bytes = point.size(),
+                          .message_bytes = message.size(),
+                          .out_of_memory = out_of_memory};
     write_all(file, point);
     write_all(file, message);
     write_all(file, std::as_bytes(std::span(&trailer, 1)));

@@ -31,20 +31,20 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
         again = false;
         for (std::size_t word = 0; word < open_.size(); ++word) {
             while (open_[word] != 0) {
-                const std::size_t a = word * 64 + static_cast<std::size_t>(std::countr_zero(open_[word]));
+                const std::size_t a = word * 64 + to_index(std::countr_zero(open_[word]));
                 open_[word] &= open_[word] - 1;
                 if (--until_check == 0) {
                     if (find_cycles(before, cycles)) return false;
                     until_check = size / 2 + 1;
                 }
                 if (--until_clock == 0) {
-                    if (clock_ != nullptr && clock_->out_of_time(kArcsPerClock * kWorkPerArc)) return true;
+                    if (clock_.out_of_time(kArcsPerClock * kWorkPerArc)) return true;
                     until_clock = kArcsPerClock;
                 }
                 const double value = label[a];
                 for (int position = graph.out_start[a]; position < graph.out_start[a + 1]; ++position) {
-                    const auto p = static_cast<std::size_t>(position);
-                    const auto b = static_cast<std::size_t>(graph.out_arc[p]);
+                    const auto p = to_index(position);
+                    const auto b = to_index(graph.out_arc[p]);
                     const double candidate = value + graph.out_cost[p] + reduced[b];
                     if (candidate < label[b] - kGain) {
                         label[b] = candidate;
@@ -74,23 +74,23 @@ void LegBounds::begin_forward(const ResidualGraph& graph, std::span<const double
     color_.assign(size, unknown);
     for (std::size_t last = 0; last < size; ++last) {
         walk_.clear();
-        for (auto a = static_cast<int>(last); a >= 0 && color_[static_cast<std::size_t>(a)] == unknown;
-             a = before[static_cast<std::size_t>(a)]) {
-            color_[static_cast<std::size_t>(a)] = on_the_way;
+        for (auto a = static_cast<int>(last); a >= 0 && color_[to_index(a)] == unknown;
+             a = before[to_index(a)]) {
+            color_[to_index(a)] = on_the_way;
             walk_.push_back(a);
         }
         for (; !walk_.empty(); walk_.pop_back()) {
-            const auto b = static_cast<std::size_t>(walk_.back());
+            const auto b = to_index(walk_.back());
             color_[b] = known;
             label[b] = start[b] + reduced[b];
             const int a = std::exchange(before[b], -1);
-            if (a < 0 || color_[static_cast<std::size_t>(a)] != known) continue;  // cuts a cycle open
+            if (a < 0 || color_[to_index(a)] != known) continue;  // cuts a cycle open
             const auto* const first = graph.in_arc.data() + graph.in_start[b];
             const auto* const end = graph.in_arc.data() + graph.in_start[b + 1];
             const auto* const found = std::find(first, end, a);
             if (found == end) continue;
             const double turn = graph.in_cost[static_cast<std::size_t>(found - graph.in_arc.data())];
-            const double on = label[static_cast<std::size_t>(a)] + turn + reduced[b];
+            const double on = label[to_index(a)] + turn + reduced[b];
             if (!(on < label[b])) continue;
             label[b] = on;
             before[b] = a;
@@ -113,17 +113,17 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
         again = false;
         for (std::size_t word = open_.size(); word-- > 0;) {
             while (open_[word] != 0) {
-                const std::size_t bit = 63 - static_cast<std::size_t>(std::countl_zero(open_[word]));
+                const std::size_t bit = 63 - to_index(std::countl_zero(open_[word]));
                 const std::size_t b = word * 64 + bit;
                 open_[word] &= ~(std::uint64_t{1} << bit);
                 if (--until_clock == 0) {
-                    if (clock_ != nullptr && clock_->out_of_time(kArcsPerClock * kWorkPerArc)) return;
+                    if (clock_.out_of_time(kArcsPerClock * kWorkPerArc)) return;
                     until_clock = kArcsPerClock;
                 }
                 const double value = label[b] + reduced[b];
                 for (int position = graph.in_start[b]; position < graph.in_start[b + 1]; ++position) {
-                    const auto p = static_cast<std::size_t>(position);
-                    const auto a = static_cast<std::size_t>(graph.in_arc[p]);
+                    const auto p = to_index(position);
+                    const auto a = to_index(graph.in_arc[p]);
                     const double candidate = value + graph.in_cost[p];
                     if (candidate < label[a] - kGain && usable[a] != 0) {
                         label[a] = candidate;
@@ -141,16 +141,16 @@ bool LegBounds::find_cycles(std::span<const int> before, std::vector<int>& cycle
     color_.assign(before.size(), -1);
     for (std::size_t first = 0; first < before.size(); ++first) {
         auto a = static_cast<int>(first);
-        while (a >= 0 && color_[static_cast<std::size_t>(a)] < 0) {
-            color_[static_cast<std::size_t>(a)] = static_cast<int>(first);
-            a = before[static_cast<std::size_t>(a)];
+        while (a >= 0 && color_[to_index(a)] < 0) {
+            color_[to_index(a)] = static_cast<int>(first);
+            a = before[to_index(a)];
         }
-        if (a < 0 || color_[static_cast<std::size_t>(a)] != static_cast<int>(first)) continue;
+        if (a < 0 || color_[to_index(a)] != static_cast<int>(first)) continue;
         const auto begin = static_cast<std::ptrdiff_t>(cycles.size());
         int member = a;
         do {
             cycles.push_back(member);
-            member = before[static_cast<std::size_t>(member)];
+            member = before[to_index(member)];
         } while (member != a);
         std::reverse(cycles.begin() + begin, cycles.end());
         cycles.push_back(-1);
@@ -160,7 +160,7 @@ bool LegBounds::find_cycles(std::span<const int> before, std::vector<int>& cycle
 
 void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::span<const double> reduced,
                   std::vector<double>& cone_multiplier) {
-    const auto head = [&](int arc) { return graph.head[static_cast<std::size_t>(arc)]; };
+    const auto head = [&](int arc) { return graph.head[to_index(arc)]; };
     for (std::size_t begin = 0; begin < cycles.size();) {
         const auto past = static_cast<std::size_t>(
             std::find(cycles.begin() + static_cast<std::ptrdiff_t>(begin), cycles.end(), -1) -
@@ -175,7 +175,7 @@ void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::
         if (shares_cone) continue;
         double cost = 0.0;
         for (std::size_t k = 0; k < cycle.size(); ++k) {
-            const auto a = static_cast<std::size_t>(cycle[k]);
+            const auto a = to_index(cycle[k]);
             const int next = cycle[(k + 1) % cycle.size()];
             const auto* const first = graph.out_arc.data() + graph.out_start[a];
             const auto* const last = graph.out_arc.data() + graph.out_start[a + 1];
@@ -184,7 +184,7 @@ void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::
                 graph.out_cost[static_cast<std::size_t>(std::find(first, last, next) - graph.out_arc.data())];
         }
         const double raise = std::max(kAboveZero - cost, kAboveZero) / static_cast<double>(cycle.size());
-        for (const int arc : cycle) cone_multiplier[static_cast<std::size_t>(head(arc))] += raise;
+        for (const int arc : cycle) cone_multiplier[to_index(head(arc))] += raise;
     }
 }
 

@@ -16,8 +16,8 @@ namespace conelane::path_pair {
 /// twice and hold incompatible edges. Labels are exact up to 1e-12 a step.
 class LegBounds {
   public:
-    /// With a clock, both passes end early when it expires; the labels are then invalid.
-    void bind(SearchClock& clock) { clock_ = &clock; }
+    /// Both passes end early when the clock expires; the labels are then invalid.
+    explicit LegBounds(SearchClock& clock) : clock_(clock) {}
 
     /// `start` by arc: the cost of starting with it, kUnreachable if a leg must not. Returns false if a walk
     /// gains from an endless cycle; `cycles` then holds the arcs of one or more cycles, each followed by -1.
@@ -37,7 +37,7 @@ class LegBounds {
                        std::span<const double> start, std::vector<double>& label, std::vector<int>& before);
     bool find_cycles(std::span<const int> before, std::vector<int>& cycles);
 
-    SearchClock* clock_ = nullptr;
+    SearchClock& clock_;
     std::vector<std::uint64_t> open_;  ///< arcs whose label changed
     std::vector<int> color_;
     std::vector<int> walk_;

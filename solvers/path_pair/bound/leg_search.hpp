@@ -28,9 +28,9 @@ class LegSearch {
     bool run(const Query& query, double cutoff, std::int64_t& budget, Visit&& visit) {
         open_.clear();
         leg_.clear();
-        used_.assign(static_cast<std::size_t>(query.graph.cone_count()), 0);
+        used_.assign(to_index(query.graph.cone_count()), 0);
         for (int a = 0; a < query.residual.size(); ++a) {
-            const auto at = static_cast<std::size_t>(a);
+            const auto at = to_index(a);
             const double cost = query.start[at] + query.reduced[at];
             if (cost + query.backward[at] < cutoff) open_.push_back({a, 0, cost, cost + query.backward[at]});
         }
@@ -43,15 +43,15 @@ class LegSearch {
             if (--budget < 0) return false;
             if (!fits(query, step.arc)) continue;
             advance(query, step.arc);
-            const auto at = static_cast<std::size_t>(step.arc);
+            const auto at = to_index(step.arc);
             if (step.cost + query.end[at] < cutoff) {
                 cutoff = visit(std::span<const int>(leg_), step.cost + query.end[at]);
             }
             const std::size_t first = open_.size();
             for (int position = query.residual.out_start[at]; position < query.residual.out_start[at + 1];
                  ++position) {
-                const auto p = static_cast<std::size_t>(position);
-                const auto next = static_cast<std::size_t>(query.residual.out_arc[p]);
+                const auto p = to_index(position);
+                const auto next = to_index(query.residual.out_arc[p]);
                 const double cost = step.cost + query.residual.out_cost[p] + query.reduced[next];
                 const double bound = cost + query.backward[next];
                 if (bound < cutoff) open_.push_back({static_cast<int>(next), leg_.size(), cost, bound});
@@ -74,7 +74,7 @@ class LegSearch {
                   [](const Step& a, const Step& b) { return a.bound > b.bound; });
     }
     [[nodiscard]] bool fits(const Query& query, int arc) const {
-        if (used_[static_cast<std::size_t>(query.residual.head[static_cast<std::size_t>(arc)])] != 0) {
+        if (used_[to_index(query.residual.head[to_index(arc)])] != 0) {
             return false;
         }
         const int edge = query.residual.edge(arc);
@@ -85,16 +85,16 @@ class LegSearch {
         return true;
     }
     void advance(const Query& query, int arc) {
-        const auto at = static_cast<std::size_t>(arc);
-        if (leg_.empty()) used_[static_cast<std::size_t>(query.residual.tail[at])] = 1;
-        used_[static_cast<std::size_t>(query.residual.head[at])] = 1;
+        const auto at = to_index(arc);
+        if (leg_.empty()) used_[to_index(query.residual.tail[at])] = 1;
+        used_[to_index(query.residual.head[at])] = 1;
         leg_.push_back(arc);
     }
     void retreat(const Query& query) {
-        const auto at = static_cast<std::size_t>(leg_.back());
+        const auto at = to_index(leg_.back());
         leg_.pop_back();
-        used_[static_cast<std::size_t>(query.residual.head[at])] = 0;
-        if (leg_.empty()) used_[static_cast<std::size_t>(query.residual.tail[at])] = 0;
+        used_[to_index(query.residual.head[at])] = 0;
+        if (leg_.empty()) used_[to_index(query.residual.tail[at])] = 0;
     }
 
     std::vector<Step> open_;

@@ -1,9 +1,16 @@
 #include "solvers/path_pair/bound/multipliers.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace conelane::path_pair {
+namespace {
+
+constexpr double kMinUse = 0.02;
+constexpr double kMinViolation = 0.05;
+
+}  // namespace
 
 void CliquePool::clear() {
     start_.assign(1, 0);
@@ -19,6 +26,56 @@ bool CliquePool::add(std::span<const int> clique) {
     return true;
 }
 
+int CliqueSeparation::separate(const ArcGraph& graph, std::span<const double> edge_use,
+                               std::span<const char> edge_alive, int most, CliquePool& pool,
+                               SearchClock& clock) {
+    used_.clear();
+    for (int e = 0; e < graph.edge_count(); ++e) {
+        if (edge_use[to_index(e)] > kMinUse) used_.push_back(e);
+    }
+    std::ranges::sort(used_, [&](int a, int b) {
+        const double use_a = edge_use[to_index(a)];
+        const double use_b = edge_use[to_index(b)];
+        return use_a != use_b ? use_a > use_b : a < b;
+    });
+    covered_.assign(used_.size(), 0);
+    int added = 0;
+    for (std::size_t seed = 0; seed < used_.size() && added < most; ++seed) {
+        if (covered_[seed] != 0) continue;
+        if (clock.out_of_time(used_.size() + 20 * graph.incompatible_row(used_[seed]).size())) break;
+        clique_.assign(1, used_[seed]);
+        double sum = edge_use[to_index(used_[seed])];
+        const std::span<const std::uint64_t> row = graph.incompatible_row(used_[seed]);
+        common_.assign(row.begin(), row.end());
+        const auto in_common = [&](int e) {
+            return (common_[to_index(e) / 64] >> (static_cast<unsigned>(e) % 64) & 1) != 0;
+        };
+        const auto join = [&](int e) {
+            clique_.push_back(e);
+            const std::span<const std::uint64_t> other = graph.incompatible_row(e);
+            for (std::size_t w = 0; w < common_.size(); ++w) common_[w] &= other[w];
+        };
+        for (const int e : used_) {
+            if (!in_common(e)) continue;
+            sum += edge_use[to_index(e)];
+            join(e);
+        }
+        if (sum <= 1.0 + kMinViolation) continue;
+        for (std::size_t other = seed; other < used_.size(); ++other) {
+            if (std::ranges::find(clique_, used_[other]) != clique_.end()) covered_[other] = 1;
+        }
+        for (std::size_t w = 0; w < common_.size(); ++w) {
+            for (std::uint64_t bits = common_[w]; bits != 0; bits &= bits - 1) {
+                const auto e = static_cast<int>(w * 64) + std::countr_zero(bits);
+                if (edge_alive[to_index(e)] != 0 && in_common(e)) join(e);
+            }
+        }
+        std::ranges::sort(clique_);
+        if (pool.add(clique_)) ++added;
+    }
+    return added;
+}
+
 double Multipliers::offset() const {
     return std::accumulate(cone.begin(), cone.end(), 0.0) +
            std::accumulate(clique.begin(), clique.end(), 0.0) - 2.0 * heading;
@@ -27,18 +84,18 @@ double Multipliers::offset() const {
 void reduce(const ArcGraph& graph, const CliquePool& cliques, const Multipliers& multipliers,
             const ResidualGraph& residual, std::vector<double>& edge_multiplier,
             std::vector<double>& reduced) {
-    edge_multiplier.assign(static_cast<std::size_t>(graph.edge_count()), 0.0);
+    edge_multiplier.assign(to_index(graph.edge_count()), 0.0);
     for (int q = 0; q < cliques.size(); ++q) {
-        const double multiplier = multipliers.clique[static_cast<std::size_t>(q)];
+        const double multiplier = multipliers.clique[to_index(q)];
         if (multiplier == 0.0) continue;
-        for (const int edge : cliques.edges(q)) edge_multiplier[static_cast<std::size_t>(edge)] += multiplier;
+        for (const int edge : cliques.edges(q)) edge_multiplier[to_index(edge)] += multiplier;
     }
     reduced.resize(residual.arc.size());
     for (std::size_t a = 0; a < reduced.size(); ++a) {
         const int edge = residual.arc[a] / 2;
-        reduced[a] = graph.cost(edge) + edge_multiplier[static_cast<std::size_t>(edge)] -
+        reduced[a] = graph.cost(edge) + edge_multiplier[to_index(edge)] -
                      (graph.along_heading(edge) ? multipliers.heading : 0.0) +
-                     multipliers.cone[static_cast<std::size_t>(residual.head[a])];
+                     multipliers.cone[to_index(residual.head[a])];
     }
 }
 

@@ -2,8 +2,10 @@
 
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,8 +17,7 @@ class CliquePool {
     void clear();
     [[nodiscard]] int size() const { return static_cast<int>(start_.size()) - 1; }
     [[nodiscard]] std::span<const int> edges(int clique) const {
-        return {edges_.data() + start_[static_cast<std::size_t>(clique)],
-                edges_.data() + start_[static_cast<std::size_t>(clique) + 1]};
+        return {edges_.data() + start_[to_index(clique)], edges_.data() + start_[to_index(clique) + 1]};
     }
     /// Returns false if the pool has it already. Precondition: edges in ascending order.
     bool add(std::span<const int> clique);
@@ -24,6 +25,21 @@ class CliquePool {
   private:
     std::vector<std::size_t> start_{0};
     std::vector<int> edges_;
+};
+
+/// Finds cliques of incompatible edges whose averaged uses x add up to more than 1. A clique grows greedily
+/// from each edge in use, largest x first, then is extended to a maximal clique of the residual graph.
+class CliqueSeparation {
+  public:
+    /// Returns the number of cliques added to the pool, at most `most`; fewer if the clock expires.
+    int separate(const ArcGraph& graph, std::span<const double> edge_use, std::span<const char> edge_alive,
+                 int most, CliquePool& pool, SearchClock& clock);
+
+  private:
+    std::vector<int> used_;
+    std::vector<int> clique_;
+    std::vector<std::uint64_t> common_;  ///< edges that are incompatible with all edges of the clique
+    std::vector<char> covered_;
 };
 
 /// Multipliers of the rows that couple the legs,

@@ -4,7 +4,6 @@
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <array>
 #include <span>
@@ -30,17 +29,17 @@ class Decisions {
 
     /// Precondition: it is not required yet.
     void require_edge(const ArcGraph& graph, int edge);
-    [[nodiscard]] bool edge_required(int edge) const { return edge_[static_cast<std::size_t>(edge)] != 0; }
+    [[nodiscard]] bool edge_required(int edge) const { return edge_[to_index(edge)] != 0; }
 
     /// Whether a far cone ends a leg.
     enum class End : char { open, never, always };
     void decide_end(int cone, End decision);
-    [[nodiscard]] End end(int cone) const { return end_[static_cast<std::size_t>(cone)]; }
+    [[nodiscard]] End end(int cone) const { return end_[to_index(cone)]; }
 
     /// Whether a leg may start or end at a cone by this edge. An edge that is required at a cone stays inside
     /// of legs otherwise.
     [[nodiscard]] bool may_be_last(int cone, int by_edge) const {
-        const int count = edges_at_[static_cast<std::size_t>(cone)];
+        const int count = edges_at_[to_index(cone)];
         return count == 0 || (count == 1 && edge_required(by_edge));
     }
     /// Whether two cones may be the ends of the two legs, except for (17).
@@ -65,8 +64,19 @@ class Decisions {
 /// and, with h as the cost of ending, forward(a) + backward(a) - offset bounds every pair that uses arc a.
 class PairRelaxation {
   public:
-    void bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
-              const Decisions& decisions, SearchClock& clock);
+    PairRelaxation(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
+                   const Decisions& decisions, SearchClock& clock)
+        : graph_(graph),
+          system_(system),
+          cliques_(cliques),
+          decisions_(decisions),
+          clock_(clock),
+          bounds_(clock) {}
+
+    /// Forgets the walks of earlier evaluations, so that a search does not depend on the one before.
+    void forget() {
+        for (Legs& legs : legs_) legs.before.clear();
+    }
 
     /// Returns the bound. If a walk gains from a cycle, the multipliers of the cycle's cones are first raised
     /// until the cycle costs nothing. Minus infinity if stopped.
@@ -80,10 +90,10 @@ class PairRelaxation {
     void onward(const ResidualGraph& residual, int kind, std::vector<double>& label);
 
     /// Arcs of the legs that attain the bound.
-    [[nodiscard]] const std::array<std::vector<int>, 2>& walks(const ResidualGraph& residual);
+    [[nodiscard]] const std::array<std::vector<int>, 2>& walks();
 
-    [[nodiscard]] bool symmetric() const { return system_->kind_count == 1; }
-    [[nodiscard]] const LegSystem& system() const { return *system_; }
+    [[nodiscard]] bool symmetric() const { return system_.kind_count == 1; }
+    [[nodiscard]] const LegSystem& system() const { return system_; }
     [[nodiscard]] int other(int kind) const { return symmetric() ? 0 : 1 - kind; }
     [[nodiscard]] double offset() const { return offset_; }
     [[nodiscard]] std::span<const double> reduced() const { return reduced_; }
@@ -93,8 +103,8 @@ class PairRelaxation {
     /// By arc: h of its head, kUnreachable if a leg must not end with it.
     [[nodiscard]] std::span<const double> end(int kind) const { return legs_[to_index(kind)].end; }
     [[nodiscard]] bool ends_fit(int cone, int other) const {
-        return !system_->ends_are_partners ||
-               (graph_->are_partners(cone, other) && decisions_->ends_fit(cone, other));
+        return !system_.ends_are_partners ||
+               (graph_.are_partners(cone, other) && decisions_.ends_fit(cone, other));
     }
     /// The cones at which the legs of the bound end; -1 without legs.
     [[nodiscard]] const std::array<int, 2>& ends() const { return ends_; }
@@ -115,11 +125,11 @@ class PairRelaxation {
     double combine();
     void pick_ends(const ResidualGraph& residual, int kind);
 
-    const ArcGraph* graph_ = nullptr;
-    const LegSystem* system_ = nullptr;
-    const CliquePool* cliques_ = nullptr;
-    const Decisions* decisions_ = nullptr;
-    SearchClock* clock_ = nullptr;
+    const ArcGraph& graph_;
+    const LegSystem& system_;
+    const CliquePool& cliques_;
+    const Decisions& decisions_;
+    SearchClock& clock_;
     LegBounds bounds_;
     std::array<Legs, 2> legs_;
     std::vector<double> reduced_;
@@ -130,6 +140,45 @@ class PairRelaxation {
     std::array<std::vector<int>, 2> walks_;
     std::array<int, 2> ends_{-1, -1};
     double offset_ = 0.0;
+};
+
+/// Reduced-cost fixing: arcs and turns whose bound reaches a limit are in no better pair of legs.
+class ArcFixing {
+  public:
+    /// Drops them from the graph. Returns false, without a change, if they are less than a tenth of it: then
+    /// renumbering does not pay. `limit`: with offset. Precondition: forward and backward labels are
+    /// evaluated on the graph.
+    bool drop(const PairRelaxation& relaxation, double limit, ResidualGraph& graph);
+
+  private:
+    std::vector<int> order_;
+    std::vector<char> keep_successor_;
+    std::vector<int> index_;
+    ResidualGraph spare_;
+};
+
+/// Use of edges and ends by the two walks of the bound: in the last step of an ascent, and averaged over its
+/// steps.
+class WalkUsage {
+  public:
+    /// Forgets earlier steps.
+    void reset(const ArcGraph& graph);
+    /// Adds a step. `memory`: the share of the averages that is kept. Precondition: the relaxation was
+    /// evaluated on the residual graph.
+    void count(const ArcGraph& graph, const CliquePool& cliques, const ResidualGraph& residual,
+               PairRelaxation& relaxation, double memory);
+
+    [[nodiscard]] const Usage& last() const { return last_; }
+    /// By edge, averaged: 1 if the two legs together always use it once.
+    [[nodiscard]] std::span<const double> edges() const { return edges_; }
+    /// By cone, averaged: legs that end there.
+    [[nodiscard]] std::span<const double> ends() const { return ends_; }
+
+  private:
+    Usage last_;
+    std::vector<double> edges_;
+    std::vector<double> ends_;
+    std::vector<int> times_;  ///< by edge, in the last step
 };
 
 }  // namespace conelane::path_pair

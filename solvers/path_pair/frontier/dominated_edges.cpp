@@ -1,6 +1,6 @@
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 

@@ -44,7 +44,7 @@ class DominatedEdges {
   private:
     using Sets = std::array<std::vector<std::uint64_t>, 2>;  ///< by kind, a row for each arc
     [[nodiscard]] const std::uint64_t* row(const Sets& sets, int kind, int arc) const {
-        return sets[static_cast<std::size_t>(kind)].data() + static_cast<std::size_t>(arc) * edges_->words();
+        return sets[to_index(kind)].data() + to_index(arc) * edges_->words();
     }
 
     const EdgeSets* edges_ = nullptr;

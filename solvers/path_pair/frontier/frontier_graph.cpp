@@ -17,20 +17,9 @@ constexpr std::size_t kWorkPerFrontier = 200;  ///< in steps of the clock
 /// Room is made for so many, and for steps, before the first one. Memory that is not written to costs
 /// nothing.
 constexpr std::size_t kReservedFrontiers = std::size_t{1} << 18U;
-constexpr std::size_t kStepsPerFrontier = 4;
 constexpr std::size_t kMaxFirstFrontiers = 1'000'000;
 
 }  // namespace
-
-void FrontierGraph::Arrays::clear() {
-    frontiers.clear();
-    last.clear();
-    begin.clear();
-    end.clear();
-    steps.clear();
-    forward.clear();
-    onward.clear();
-}
 
 std::uint64_t FrontierGraph::key(const Frontier& frontier) {
     return (static_cast<std::uint64_t>(frontier.moving) << 32) +
@@ -38,18 +27,8 @@ std::uint64_t FrontierGraph::key(const Frontier& frontier) {
            (frontier.ended ? 1U : 0U);
 }
 
-void FrontierGraph::Arrays::reserve(std::size_t count) {
-    frontiers.reserve(count);
-    last.reserve(count);
-    begin.reserve(count);
-    end.reserve(count);
-    steps.reserve(kStepsPerFrontier * count);
-    forward.reserve(count);
-    onward.reserve(count);
-}
-
 bool FrontierGraph::out_of_time(std::size_t frontiers) {
-    return clock_->tick(kWorkPerFrontier * frontiers);
+    return clock_.tick(kWorkPerFrontier * frontiers);
 }
 
 bool FrontierGraph::fill_dominated(std::size_t words) {
@@ -69,10 +48,9 @@ void FrontierGraph::forget_frontiers() {
 double FrontierGraph::start_cost(int f) const {
     const Frontier& start = frontier(f);
     const int kind = start.moving_kind;
-    const int other = relaxation_->other(kind);
-    return relaxation_->start(kind)[to_index(start.moving)] + relaxation_->reduced()[to_index(start.moving)] +
-           relaxation_->start(other)[to_index(start.waiting)] +
-           relaxation_->reduced()[to_index(start.waiting)];
+    const int other = relaxation_.other(kind);
+    return relaxation_.start(kind)[to_index(start.moving)] + relaxation_.reduced()[to_index(start.moving)] +
+           relaxation_.start(other)[to_index(start.waiting)] + relaxation_.reduced()[to_index(start.waiting)];
 }
 
 bool FrontierGraph::grow_table() {
@@ -111,10 +89,10 @@ int FrontierGraph::number(const Frontier& wanted) {
 /// The first frontiers below the limit.
 void FrontierGraph::begin(double limit) {
     const ResidualGraph& r = *residual_;
-    const bool symmetric = relaxation_->symmetric();
-    const int second = relaxation_->other(0);
+    const bool symmetric = relaxation_.symmetric();
+    const int second = relaxation_.other(0);
     const auto cost = [&](int kind, int a) {
-        return relaxation_->start(kind)[to_index(a)] + relaxation_->reduced()[to_index(a)];
+        return relaxation_.start(kind)[to_index(a)] + relaxation_.reduced()[to_index(a)];
     };
     stack_.clear();  // arcs that a leg of the second kind may start with
     for (int b = 0; b < r.size(); ++b) {
@@ -157,11 +135,11 @@ void FrontierGraph::add_steps(int f, double limit) {
     const ResidualGraph& r = *residual_;
     const Frontier here = frontier(f);
     const int kind = here.moving_kind;
-    const int other = relaxation_->other(kind);
-    const std::span<const double> reduced = relaxation_->reduced();
+    const int other = relaxation_.other(kind);
+    const std::span<const double> reduced = relaxation_.reduced();
     const std::span<const double> onward = leg_onward_[to_index(kind)];
-    const double forward = relaxation_->forward(kind)[to_index(here.moving)];
-    const double waiting = relaxation_->forward(other)[to_index(here.waiting)] +
+    const double forward = relaxation_.forward(kind)[to_index(here.moving)];
+    const double waiting = relaxation_.forward(other)[to_index(here.waiting)] +
                            (here.ended ? 0.0 : leg_onward_[to_index(other)][to_index(here.waiting)]);
     const int waiting_cone = r.head[to_index(here.waiting)];
     const int ways = r.out_start[to_index(here.moving) + 1] - r.out_start[to_index(here.moving)];
@@ -178,20 +156,20 @@ void FrontierGraph::add_steps(int f, double limit) {
         }
         now_.steps.push_back({-1, next, r.out_cost[to_index(p)]});
     }
-    if (!here.ended && relaxation_->may_end(r, kind, here.moving)) now_.steps.push_back({-1, -1, 0.0});
+    if (!here.ended && relaxation_.may_end(r, kind, here.moving)) now_.steps.push_back({-1, -1, 0.0});
     now_.end[to_index(f)] = now_.steps.size();
 }
 
 bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
                           std::size_t max_frontiers, const EdgeSets* edges) {
-    if (clock_->out_of_time()) return false;
+    if (clock_.out_of_time()) return false;
     residual_ = &residual;
     edges_ = edges;
     dominated_.reset(edges_ == nullptr ? 0 : edges_->words());
     if (edges_ != nullptr) nothing_.assign(edges_->words(), 0);
     dominated_of_arcs_ = &dominated;
-    for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
-        relaxation_->onward(residual, kind, leg_onward_[to_index(kind)]);
+    for (int kind = 0; kind < relaxation_.system().kind_count; ++kind) {
+        relaxation_.onward(residual, kind, leg_onward_[to_index(kind)]);
     }
     now_.clear();
     now_.reserve(std::min(kReservedFrontiers, max_frontiers));
@@ -204,7 +182,7 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
     moving_ = 0;
     table_.assign(kFewSlots, -1);
     begin(limit);
-    if (clock_->struck() || now_.frontiers.size() > kMaxFirstFrontiers) {
+    if (clock_.expired() || now_.frontiers.size() > kMaxFirstFrontiers) {
         stack_.clear();
         return false;
     }
@@ -224,7 +202,7 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
         }
     }
     order();
-    return !clock_->struck();
+    return !clock_.expired();
 }
 
 void FrontierGraph::open(int f) {
@@ -246,8 +224,8 @@ bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
 /// Lowers the forward costs of the frontiers after this one. False if there are too many.
 bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
     const Frontier here = frontier(f);
-    const int other = relaxation_->other(here.moving_kind);
-    const std::span<const double> reduced = relaxation_->reduced();
+    const int other = relaxation_.other(here.moving_kind);
+    const std::span<const double> reduced = relaxation_.reduced();
     const std::span<const double> leg_onward = leg_onward_[to_index(here.moving_kind)];
     const double forward = now_.forward[to_index(f)];
     const double waiting = here.ended ? 0.0 : leg_onward_[to_index(other)][to_index(here.waiting)];
@@ -282,8 +260,8 @@ void FrontierGraph::order() {
     const ResidualGraph& r = *residual_;
     for (const Frontier& f : now_.frontiers) {
         if (out_of_time()) return forget_frontiers();
-        const bool last = f.ended && relaxation_->may_end(r, f.moving_kind, f.moving) &&
-                          relaxation_->ends_fit(r.head[to_index(f.moving)], r.head[to_index(f.waiting)]);
+        const bool last = f.ended && relaxation_.may_end(r, f.moving_kind, f.moving) &&
+                          relaxation_.ends_fit(r.head[to_index(f.moving)], r.head[to_index(f.waiting)]);
         now_.last.push_back(last ? 1 : 0);
     }
     if (!fill(now_.onward, now_.frontiers.size(), kUnreachable) ||

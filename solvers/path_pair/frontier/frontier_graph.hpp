@@ -2,11 +2,10 @@
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/graph/timed_growth.hpp"
-#include "solvers/path_pair/graph/to_index.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
 #include <array>
@@ -42,10 +41,7 @@ class FrontierGraph {
 
     /// If the clock's time ends, every function below returns early and its result must not be used. If that
     /// happens while the frontiers are renumbered, no frontier is left.
-    void bind(PairRelaxation& relaxation, SearchClock& clock) {
-        relaxation_ = &relaxation;
-        clock_ = &clock;
-    }
+    FrontierGraph(PairRelaxation& relaxation, SearchClock& clock) : relaxation_(relaxation), clock_(clock) {}
 
     /// All frontiers that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
     /// forward(f). With `edges`, steps by edges that every walk up to their frontier has lost are left out.
@@ -76,10 +72,11 @@ class FrontierGraph {
     /// Reduced cost of the two arcs of a first frontier.
     [[nodiscard]] double start_cost(int f) const;
     [[nodiscard]] double cost(const Step& step) const {
-        return step.turn + (step.arc < 0 ? 0.0 : relaxation_->reduced()[to_index(step.arc)]);
+        return step.turn + (step.arc < 0 ? 0.0 : relaxation_.reduced()[to_index(step.arc)]);
     }
 
   private:
+    static constexpr std::size_t kStepsPerFrontier = 4;  ///< for which room is made at once
     struct Arrays {
         std::vector<Frontier> frontiers;
         std::vector<char> last;
@@ -89,8 +86,23 @@ class FrontierGraph {
         std::vector<double> forward;
         std::vector<double> onward;
 
-        void clear();
-        void reserve(std::size_t count);  ///< Precondition: cleared.
+        template <typename Visit>
+        void for_each(const Visit& visit) {
+            visit(frontiers, 1);
+            visit(last, 1);
+            visit(begin, 1);
+            visit(end, 1);
+            visit(steps, kStepsPerFrontier);
+            visit(forward, 1);
+            visit(onward, 1);
+        }
+        void clear() {
+            for_each([](auto& values, std::size_t) { values.clear(); });
+        }
+        /// Precondition: cleared.
+        void reserve(std::size_t count) {
+            for_each([&](auto& values, std::size_t each) { values.reserve(each * count); });
+        }
     };
     static std::uint64_t key(const Frontier& frontier);
     /// Call it before this many frontiers are looked at.
@@ -98,11 +110,11 @@ class FrontierGraph {
     /// For graph/timed_growth.hpp.
     template <typename T>
     bool fill(std::vector<T>& values, std::size_t count, T value) {
-        return path_pair::fill(values, count, value, *clock_);
+        return path_pair::fill(values, count, value, clock_);
     }
     template <typename T>
     bool make_room(std::vector<T>& values, std::size_t more) {
-        return path_pair::make_room(values, more, *clock_);
+        return path_pair::make_room(values, more, clock_);
     }
     /// Whether walks up to a frontier or on from it are meant: sets of lost edges pass along the steps, sets
     /// of excluded edges against them.
@@ -128,8 +140,8 @@ class FrontierGraph {
     bool order_frontiers();
     void keep(std::span<const int> order);
 
-    PairRelaxation* relaxation_ = nullptr;
-    SearchClock* clock_ = nullptr;
+    PairRelaxation& relaxation_;
+    SearchClock& clock_;
     const ResidualGraph* residual_ = nullptr;
     const DominatedEdges* dominated_of_arcs_ = nullptr;
     const EdgeSets* edges_ = nullptr;                ///< of the build, if it looks for dominated edges

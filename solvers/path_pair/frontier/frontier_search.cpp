@@ -1,6 +1,6 @@
 #include "solvers/path_pair/frontier/frontier_search.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -14,28 +14,16 @@ constexpr std::size_t kSetsPerLabel = 20;  ///< its detours, along its arcs, tak
 
 }  // namespace
 
-void FrontierSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
-                          SearchClock& clock) {
-    graph_ = &graph;
-    relaxation_ = &relaxation;
-    incumbent_ = &incumbent;
-    clock_ = &clock;
-}
-
-double FrontierSearch::limit() const {
-    return incumbent_->cutoff() - limits_.tolerance + relaxation_->offset();
-}
-
 bool FrontierSearch::out_of_time(std::size_t sets) {
-    return clock_->tick(kWorkPerSet * sets);
+    return clock_.tick(kWorkPerSet * sets);
 }
 
 void FrontierSearch::take(int arc, Label& label, std::uint64_t* lost) const {
-    const std::uint64_t* const more = edges_->lost_after(arc);
+    const std::uint64_t* const more = edges_.lost_after(arc);
     for (std::size_t w = 0; w < words_; ++w) lost[w] |= more[w];
-    const int edge = frontiers_->residual().edge(arc);
-    label.cost += graph_->cost(edge);
-    if (graph_->along_heading(edge)) label.along_heading = std::min(2, label.along_heading + 1);
+    const int edge = frontiers_.residual().edge(arc);
+    label.cost += graph_.cost(edge);
+    if (graph_.along_heading(edge)) label.along_heading = std::min(2, label.along_heading + 1);
 }
 
 void FrontierSearch::wait(Label label) {
@@ -46,35 +34,37 @@ void FrontierSearch::wait(Label label) {
 }
 
 void FrontierSearch::begin() {
-    for (const int f : frontiers_->starts()) {
+    for (const int f : frontiers_.starts()) {
         if (out_of_time(1)) return;
-        const double reduced = frontiers_->start_cost(f);
-        if (!(reduced + frontiers_->onward(f) < limit())) continue;
-        Label label{-1, -1, f, 0, -1, 0.0, reduced};
+        const double reduced = frontiers_.start_cost(f);
+        if (!(reduced + frontiers_.onward(f) < limit())) continue;
+        Label label{.before = -1,
+                    .arc = -1,
+                    .frontier = f,
+                    .along_heading = 0,
+                    .next = -1,
+                    .cost = 0.0,
+                    .reduced = reduced};
         std::uint64_t* const lost = lost_.add();
         std::fill_n(lost, words_, std::uint64_t{0});
-        take(frontiers_->frontier(f).moving, label, lost);
-        take(frontiers_->frontier(f).waiting, label, lost);
+        take(frontiers_.frontier(f).moving, label, lost);
+        take(frontiers_.frontier(f).waiting, label, lost);
         wait(label);
     }
 }
 
-FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& frontiers, const EdgeSets& edges,
-                                            const OnwardTables& tables, const Limits& limits) {
-    if (clock_->out_of_time()) return Outcome::stopped;
-    frontiers_ = &frontiers;
-    edges_ = &edges;
-    tables_ = &tables;
+FrontierSearch::Outcome FrontierSearch::run(const Limits& limits) {
+    if (clock_.out_of_time()) return Outcome::stopped;
     limits_ = limits;
-    words_ = edges.words();
+    words_ = edges_.words();
     labels_.reset(1);
     lost_.reset(words_);
-    waiting_.assign(to_index(frontiers.size()), -1);
-    open_.assign((to_index(frontiers.size()) + 63) / 64, 0);
+    waiting_.assign(to_index(frontiers_.size()), -1);
+    open_.assign((to_index(frontiers_.size()) + 63) / 64, 0);
     wanted_.resize(words_);
     is_narrow_ = false;
     begin();
-    if (clock_->struck()) return Outcome::stopped;
+    if (clock_.expired()) return Outcome::stopped;
     again_ = true;
     while (again_) {
         again_ = false;
@@ -83,7 +73,7 @@ FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& frontiers, cons
                 const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
                 open_[word] &= open_[word] - 1;
                 settle(f);
-                if (clock_->struck()) return Outcome::stopped;
+                if (clock_.expired()) return Outcome::stopped;
                 if (labels_.size() > limits.max_labels) return Outcome::stopped;
             }
         }
@@ -101,10 +91,10 @@ void FrontierSearch::settle(int f) {
     any_lost_.assign(words_, 0);
     for (const int l : here_) {
         const Label& label = label_at(l);
-        if (!(label.reduced + frontiers_->onward(f) < limit())) continue;
+        if (!(label.reduced + frontiers_.onward(f) < limit())) continue;
         if (out_of_time(kSetsPerLabel + kept_along_heading_.size())) return;
-        const int most = tables_->quanta_below(limit() - label.reduced - frontiers_->onward(f));
-        if (tables_->have_detours() && detour_reaches_limit(l, most)) continue;
+        const int most = tables_.quanta_below(limit() - label.reduced - frontiers_.onward(f));
+        if (tables_.have_detours() && detour_reaches_limit(l, most)) continue;
         if (dominated(label, lost(l), most)) continue;
         if (kept_along_heading_.size() >= limits_.width) {
             is_narrow_ = true;
@@ -113,8 +103,7 @@ void FrontierSearch::settle(int f) {
         kept_along_heading_.push_back(label.along_heading);
         kept_lost_.insert(kept_lost_.end(), lost(l), lost(l) + words_);
         for (std::size_t w = 0; w < words_; ++w) any_lost_[w] |= lost(l)[w];
-        if (frontiers_->is_last(f) && label.along_heading >= 2 &&
-            label.cost < incumbent_->cutoff() - limits_.tolerance) {
+        if (frontiers_.is_last(f) && label.along_heading >= 2 && label.cost < incumbent_.limit()) {
             offer(l);
         }
         expand(l);
@@ -126,17 +115,17 @@ bool FrontierSearch::detour_reaches_limit(int l, int most) const {
     const int f = label_at(l).frontier;
     for (;; l = label_at(l).before) {
         const Label& label = label_at(l);
-        if (label.arc >= 0 && tables_->detour(f, label.arc) > most) return true;
+        if (label.arc >= 0 && tables_.detour(f, label.arc) > most) return true;
         if (label.before >= 0) continue;
-        const FrontierGraph::Frontier& start = frontiers_->frontier(label.frontier);
-        return tables_->detour(f, start.moving) > most || tables_->detour(f, start.waiting) > most;
+        const FrontierGraph::Frontier& start = frontiers_.frontier(label.frontier);
+        return tables_.detour(f, start.moving) > most || tables_.detour(f, start.waiting) > most;
     }
 }
 
 /// True if a kept label dominates this one: it costs no more, and has every edge that this label needs.
 /// Completions below the limit use no edge with a regret above `most`.
 bool FrontierSearch::dominated(const Label& label, const std::uint64_t* lost, int most) {
-    const Quanta* regret = tables_->regrets(label.frontier);
+    const Quanta* regret = tables_.regrets(label.frontier);
     for (std::size_t w = 0; w < words_; ++w, regret += 64) {
         wanted_[w] = any_lost_[w] & ~lost[w];
         for (std::uint64_t bits = wanted_[w]; bits != 0; bits &= bits - 1) {
@@ -155,11 +144,16 @@ bool FrontierSearch::dominated(const Label& label, const std::uint64_t* lost, in
 
 void FrontierSearch::expand(int l) {
     const Label label = label_at(l);
-    for (const FrontierGraph::Step& step : frontiers_->steps(label.frontier)) {
-        const double reduced = label.reduced + frontiers_->cost(step);
-        if (!(reduced + frontiers_->onward(step.to) < limit())) continue;
-        if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_->number(step.arc))) continue;
-        Label on{l, step.arc, step.to, label.along_heading, -1, label.cost + step.turn, reduced};
+    for (const FrontierGraph::Step& step : frontiers_.steps(label.frontier)) {
+        const double reduced = label.reduced + frontiers_.cost(step);
+        if (!(reduced + frontiers_.onward(step.to) < limit())) continue;
+        if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_.number(step.arc))) continue;
+        Label on = label;
+        on.before = l;
+        on.arc = step.arc;
+        on.frontier = step.to;
+        on.cost += step.turn;
+        on.reduced = reduced;
         std::uint64_t* const lost_on = lost_.add();
         std::copy_n(lost(l), words_, lost_on);
         if (step.arc >= 0) take(step.arc, on, lost_on);
@@ -169,22 +163,22 @@ void FrontierSearch::expand(int l) {
 }
 
 void FrontierSearch::offer(int label) {
-    const ResidualGraph& residual = frontiers_->residual();
+    const ResidualGraph& residual = frontiers_.residual();
     chain_.clear();
     for (int l = label; l >= 0; l = label_at(l).before) chain_.push_back(l);
     std::ranges::reverse(chain_);
-    const FrontierGraph::Frontier& start = frontiers_->frontier(label_at(chain_.front()).frontier);
+    const FrontierGraph::Frontier& start = frontiers_.frontier(label_at(chain_.front()).frontier);
     std::array<int, 2> last{start.moving, start.waiting};
     for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[to_index(last[leg])]);
     for (std::size_t k = 1; k < chain_.size(); ++k) {
         const int arc = label_at(chain_[k]).arc;
         if (arc < 0) continue;
         const std::size_t leg =
-            last[0] == frontiers_->frontier(label_at(chain_[k - 1]).frontier).moving ? 0 : 1;
+            last[0] == frontiers_.frontier(label_at(chain_[k - 1]).frontier).moving ? 0 : 1;
         last[leg] = arc;
         legs_[leg].push_back(residual.arc[to_index(arc)]);
     }
-    incumbent_->offer(legs_[0], legs_[1]);
+    incumbent_.offer(legs_[0], legs_[1]);
 }
 
 }  // namespace conelane::path_pair

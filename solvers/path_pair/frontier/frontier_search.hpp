@@ -20,9 +20,8 @@ namespace conelane::path_pair {
 ///   - its reduced cost and the cheapest walk on reach the cutoff, also if the walk must do without the
 ///     edges that one of its arcs has lost, or
 ///   - another label of the frontier dominates it: that one costs no more (true costs, without
-///     multipliers), has
-///     as many edges along the heading, and has lost no edge that this one still has and that a walk on
-///     below the cutoff uses.
+///     multipliers), has as many edges along the heading, and has lost no edge that this one still has and
+///     that a walk on below the cutoff uses.
 /// Edges far behind soon make no difference, so beginnings merge and pairs are searched almost like walks.
 class FrontierSearch {
   public:
@@ -33,17 +32,24 @@ class FrontierSearch {
     };
     static constexpr std::size_t kAnyWidth = std::numeric_limits<std::size_t>::max();
 
-    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent, SearchClock& clock);
+    FrontierSearch(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
+                   const FrontierGraph& frontiers, const EdgeSets& edges, const OnwardTables& tables,
+                   SearchClock& clock)
+        : graph_(graph),
+          relaxation_(relaxation),
+          incumbent_(incumbent),
+          frontiers_(frontiers),
+          edges_(edges),
+          tables_(tables),
+          clock_(clock) {}
 
     struct Limits {
-        double tolerance;   ///< what is not cheaper than the incumbent by more than this is left out
         std::size_t width;  ///< of each frontier only so many of the cheapest labels are expanded
         std::size_t max_labels;
     };
-    /// Offers the incumbent what is below the limits. Precondition: the frontiers' onward costs are found,
-    /// and the tables are theirs.
-    Outcome run(const FrontierGraph& frontiers, const EdgeSets& edges, const OnwardTables& tables,
-                const Limits& limits);
+    /// Offers the incumbent what is below its limit. Precondition: the frontiers' onward costs are found, and
+    /// the tables are theirs.
+    Outcome run(const Limits& limits);
 
   private:
     struct Label {
@@ -67,20 +73,17 @@ class FrontierSearch {
     void expand(int label);
     void offer(int label);
     /// With offset.
-    [[nodiscard]] double limit() const;
-    [[nodiscard]] std::uint64_t* lost(int label) { return lost_.row(static_cast<std::size_t>(label)); }
-    [[nodiscard]] Label& label_at(int number) { return *labels_.row(static_cast<std::size_t>(number)); }
-    [[nodiscard]] const Label& label_at(int number) const {
-        return *labels_.row(static_cast<std::size_t>(number));
-    }
+    [[nodiscard]] double limit() const { return incumbent_.limit() + relaxation_.offset(); }
+    [[nodiscard]] std::uint64_t* lost(int label) { return lost_.row(to_index(label)); }
+    [[nodiscard]] const Label& label_at(int number) const { return *labels_.row(to_index(number)); }
 
-    const ArcGraph* graph_ = nullptr;
-    PairRelaxation* relaxation_ = nullptr;
-    Incumbent* incumbent_ = nullptr;
-    SearchClock* clock_ = nullptr;
-    const FrontierGraph* frontiers_ = nullptr;
-    const EdgeSets* edges_ = nullptr;
-    const OnwardTables* tables_ = nullptr;
+    const ArcGraph& graph_;
+    PairRelaxation& relaxation_;
+    Incumbent& incumbent_;
+    const FrontierGraph& frontiers_;
+    const EdgeSets& edges_;
+    const OnwardTables& tables_;
+    SearchClock& clock_;
     Limits limits_{};
     bool is_narrow_ = false;  ///< the width left a label out
 

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/frontier/onward_tables.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -29,7 +29,7 @@ bool lower(Quanta* mine, const Quanta* theirs, const Quanta* excluded, Quanta mo
 }  // namespace
 
 bool OnwardTables::out_of_time(std::size_t bytes) {
-    return clock_->tick(bytes / kBytesPerStep);
+    return clock_.tick(bytes / kBytesPerStep);
 }
 
 /// `count` times kTooMany; false, and fewer, if the time has ended.
@@ -50,7 +50,7 @@ Quanta OnwardTables::to_quanta(double cost) const {
 }
 
 Quanta OnwardTables::more(int frontier, const FrontierGraph::Step& step) const {
-    return to_quanta(frontiers_->cost(step) + frontiers_->onward(step.to) - frontiers_->onward(frontier));
+    return to_quanta(frontiers_.cost(step) + frontiers_.onward(step.to) - frontiers_.onward(frontier));
 }
 
 int OnwardTables::quanta_below(double slack) const {
@@ -61,46 +61,38 @@ std::size_t OnwardTables::row_bytes(const ResidualGraph& residual) {
     return 2 * residual.arc.size() + 64 + kBlock;
 }
 
-void OnwardTables::find(const FrontierGraph& frontiers, const EdgeSets& edges, double limit,
-                        bool with_detours, SearchClock& clock) {
-    frontiers_ = &frontiers;
-    edges_ = &edges;
-    clock_ = &clock;
+void OnwardTables::find(double limit, bool with_detours) {
     double bound = kUnreachable;
-    for (const int f : frontiers.starts())
-        bound = std::min(bound, frontiers.start_cost(f) + frontiers.onward(f));
+    for (const int f : frontiers_.starts())
+        bound = std::min(bound, frontiers_.start_cost(f) + frontiers_.onward(f));
     quantum_ = std::max((limit - bound) / (kTooMany - 1), kMinQuantum);
-    edge_count_ = edges.words() * 64;
+    edge_count_ = edges_.words() * 64;
     find_regrets();
-    have_detours_ = with_detours && !clock.struck();
+    have_detours_ = with_detours && !clock_.expired();
     if (!have_detours_) return;
     number_arcs();
     find_excluded();
     find_detours();
 }
 
-void OnwardTables::find_regrets() {
-    const std::size_t count = edge_count_;
-    if (!fill(regret_, to_index(frontiers_->size()) * count)) return;
+template <typename LowerEnd, typename LowerBy>
+void OnwardTables::sweep_back(std::vector<Quanta>& table, std::size_t count, const LowerEnd& lower_end,
+                              const LowerBy& lower_by) {
+    if (!fill(table, to_index(frontiers_.size()) * count)) return;
     nothing_.assign(count, 0);
-    changed_.assign(to_index(frontiers_->size()), 0);
+    changed_.assign(to_index(frontiers_.size()), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
-        for (int f = frontiers_->size(); f-- > 0;) {
-            Quanta* const mine = regret_.data() + to_index(f) * count;
-            bool change = false;
-            for (const FrontierGraph::Step& step : frontiers_->steps(f)) {
+        for (int f = frontiers_.size(); f-- > 0;) {
+            Quanta* const mine = table.data() + to_index(f) * count;
+            bool change = sweep == 1 && lower_end(f, mine);
+            for (const FrontierGraph::Step& step : frontiers_.steps(f)) {
                 if (sweep > 1 && changed_[to_index(step.to)] < sweep - 1) continue;
                 const Quanta delta = more(f, step);
                 if (delta == kTooMany) continue;
                 if (out_of_time(count)) return;
-                change |=
-                    lower(mine, regret_.data() + to_index(step.to) * count, nothing_.data(), delta, count);
-                if (step.arc < 0) continue;
-                Quanta& own = mine[edges_->number(step.arc)];
-                change |= delta < own;
-                own = std::min(own, delta);
+                change |= lower_by(step, delta, mine);
             }
             if (!change) continue;
             changed_[to_index(f)] = sweep;
@@ -109,19 +101,34 @@ void OnwardTables::find_regrets() {
     }
 }
 
+void OnwardTables::find_regrets() {
+    const std::size_t count = edge_count_;
+    sweep_back(
+        regret_, count, [](int, Quanta*) { return false; },
+        [&](const FrontierGraph::Step& step, Quanta delta, Quanta* mine) {
+            bool change =
+                lower(mine, regret_.data() + to_index(step.to) * count, nothing_.data(), delta, count);
+            if (step.arc < 0) return change;
+            Quanta& own = mine[edges_.number(step.arc)];
+            change |= delta < own;
+            own = std::min(own, delta);
+            return change;
+        });
+}
+
 /// Columns only for the arcs that frontiers have: a small part of the graph's arcs.
 void OnwardTables::number_arcs() {
     constexpr std::size_t kNone = ~std::size_t{0};
-    column_.assign(frontiers_->residual().arc.size(), kNone);
+    column_.assign(frontiers_.residual().arc.size(), kNone);
     arcs_.clear();
     const auto add = [&](int arc) {
         if (column_[to_index(arc)] != kNone) return;
         column_[to_index(arc)] = arcs_.size();
         arcs_.push_back(arc);
     };
-    for (int f = 0; f < frontiers_->size(); ++f) {
-        add(frontiers_->frontier(f).moving);
-        add(frontiers_->frontier(f).waiting);
+    for (int f = 0; f < frontiers_.size(); ++f) {
+        add(frontiers_.frontier(f).moving);
+        add(frontiers_.frontier(f).waiting);
     }
     arc_count_ = (arcs_.size() + kBlock) / kBlock * kBlock;
     for (std::size_t& column : column_) column = std::min(column, arcs_.size());
@@ -130,13 +137,13 @@ void OnwardTables::number_arcs() {
 void OnwardTables::find_excluded() {
     columns_of_edge_.assign(edge_count_, {-1, -1});
     for (std::size_t column = 0; column < arcs_.size(); ++column) {
-        std::array<int, 2>& columns = columns_of_edge_[edges_->number(arcs_[column])];
+        std::array<int, 2>& columns = columns_of_edge_[edges_.number(arcs_[column])];
         columns[columns[0] < 0 ? 0 : 1] = static_cast<int>(column);
     }
     excluded_.assign(arcs_.size() * arc_count_, 0);
     for (std::size_t column = 0; column < arcs_.size(); ++column) {
-        const std::uint64_t* const lost = edges_->lost_after(arcs_[column]);
-        for (std::size_t w = 0; w < edges_->words(); ++w) {
+        const std::uint64_t* const lost = edges_.lost_after(arcs_[column]);
+        for (std::size_t w = 0; w < edges_.words(); ++w) {
             for (std::uint64_t bits = lost[w]; bits != 0; bits &= bits - 1) {
                 for (const int row : columns_of_edge_[w * 64 + to_index(std::countr_zero(bits))]) {
                     if (row >= 0) excluded_[to_index(row) * arc_count_ + column] = kTooMany;
@@ -148,33 +155,15 @@ void OnwardTables::find_excluded() {
 
 void OnwardTables::find_detours() {
     const std::size_t count = arc_count_;
-    if (!fill(detour_, to_index(frontiers_->size()) * count)) return;
-    nothing_.assign(count, 0);
-    changed_.assign(to_index(frontiers_->size()), 0);
-    bool again = true;
-    for (int sweep = 1; again; ++sweep) {
-        again = false;
-        for (int f = frontiers_->size(); f-- > 0;) {
-            Quanta* const mine = detour_.data() + to_index(f) * count;
-            bool change = false;
-            if (sweep == 1 && frontiers_->is_last(f)) {
-                change =
-                    lower(mine, nothing_.data(), nothing_.data(), to_quanta(-frontiers_->onward(f)), count);
-            }
-            for (const FrontierGraph::Step& step : frontiers_->steps(f)) {
-                if (sweep > 1 && changed_[to_index(step.to)] < sweep - 1) continue;
-                const Quanta delta = more(f, step);
-                if (delta == kTooMany) continue;
-                if (out_of_time(count)) return;
-                const Quanta* const excluded =
-                    step.arc < 0 ? nothing_.data() : excluded_.data() + column_[to_index(step.arc)] * count;
-                change |= lower(mine, detour_.data() + to_index(step.to) * count, excluded, delta, count);
-            }
-            if (!change) continue;
-            changed_[to_index(f)] = sweep;
-            again = true;
-        }
-    }
+    const auto end_here = [&](int f, Quanta* mine) {
+        return frontiers_.is_last(f) &&
+               lower(mine, nothing_.data(), nothing_.data(), to_quanta(-frontiers_.onward(f)), count);
+    };
+    sweep_back(detour_, count, end_here, [&](const FrontierGraph::Step& step, Quanta delta, Quanta* mine) {
+        const Quanta* const excluded =
+            step.arc < 0 ? nothing_.data() : excluded_.data() + column_[to_index(step.arc)] * count;
+        return lower(mine, detour_.data() + to_index(step.to) * count, excluded, delta, count);
+    });
 }
 
 }  // namespace conelane::path_pair

@@ -25,19 +25,20 @@ inline constexpr Quanta kTooMany = 127;  ///< more than the gap
 /// excludes; the detours of a beginning's arcs can.
 class OnwardTables {
   public:
-    /// Precondition: the onward costs of the frontiers are found. `limit`: with offset. If the
-    /// time ends within the call, the tables are incomplete and must not be used.
-    void find(const FrontierGraph& frontiers, const EdgeSets& edges, double limit, bool with_detours,
-              SearchClock& clock);
+    OnwardTables(const FrontierGraph& frontiers, const EdgeSets& edges, SearchClock& clock)
+        : frontiers_(frontiers), edges_(edges), clock_(clock) {}
+
+    /// Precondition: the onward costs of the frontiers are found. `limit`: with offset. If the time ends
+    /// within the call, the tables are incomplete and must not be used.
+    void find(double limit, bool with_detours);
 
     [[nodiscard]] bool have_detours() const { return have_detours_; }
     /// By number of the edge, in EdgeSets.
     [[nodiscard]] const Quanta* regrets(int frontier) const {
-        return regret_.data() + static_cast<std::size_t>(frontier) * edge_count_;
+        return regret_.data() + to_index(frontier) * edge_count_;
     }
     [[nodiscard]] Quanta detour(int frontier, int arc) const {
-        return detour_[static_cast<std::size_t>(frontier) * arc_count_ +
-                       column_[static_cast<std::size_t>(arc)]];
+        return detour_[to_index(frontier) * arc_count_ + column_[to_index(arc)]];
     }
     /// Regrets and detours above this reach a limit that is `slack` away.
     [[nodiscard]] int quanta_below(double slack) const;
@@ -50,14 +51,19 @@ class OnwardTables {
     /// Call it before this many bytes of rows are written.
     bool out_of_time(std::size_t bytes);
     bool fill(std::vector<Quanta>& table, std::size_t count);
+    /// Lowers the rows of a table from last frontiers back until nothing changes. `lower_end(f, row)` and
+    /// `lower_by(step, delta, row)` lower a row, the first one once, and tell whether anything fell.
+    template <typename LowerEnd, typename LowerBy>
+    void sweep_back(std::vector<Quanta>& table, std::size_t count, const LowerEnd& lower_end,
+                    const LowerBy& lower_by);
     void find_regrets();
     void number_arcs();
     void find_excluded();
     void find_detours();
 
-    const FrontierGraph* frontiers_ = nullptr;
-    const EdgeSets* edges_ = nullptr;
-    SearchClock* clock_ = nullptr;
+    const FrontierGraph& frontiers_;
+    const EdgeSets& edges_;
+    SearchClock& clock_;
     bool have_detours_ = false;
     double quantum_ = 1.0;
     std::size_t edge_count_ = 0;       ///< in whole words

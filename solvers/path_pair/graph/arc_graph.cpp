@@ -65,7 +65,7 @@ bool ArcGraph::add_successions(const LaneGraphProblem& problem, SearchClock& clo
     const auto leaving = [&](int edge, std::size_t cone) {
         return 2 * edge + (tail(2 * edge) == static_cast<int>(cone) ? 0 : 1);
     };
-    start_.assign(static_cast<std::size_t>(arc_count()) + 1, 0);
+    start_.assign(to_index(arc_count()) + 1, 0);
     turns_.clear();
     turns_.reserve(problem.turns.size());
     const auto add_turn = [&](std::size_t k) {
@@ -78,8 +78,8 @@ bool ArcGraph::add_successions(const LaneGraphProblem& problem, SearchClock& clo
         const int edge_k = edge_of_problem_[turn.edge_k];
         if (edge_i < 0 || edge_k < 0) return;
         turns_.push_back({leaving(edge_i, turn.middle), leaving(edge_k, turn.middle), turn.cost});
-        ++start_[static_cast<std::size_t>(turns_.back().arc_i ^ 1) + 1];
-        ++start_[static_cast<std::size_t>(turns_.back().arc_k ^ 1) + 1];
+        ++start_[to_index(turns_.back().arc_i ^ 1) + 1];
+        ++start_[to_index(turns_.back().arc_k ^ 1) + 1];
     };
     if (!for_each(problem.turns.size(), 20, clock, add_turn)) return false;
     for (std::size_t a = 1; a < start_.size(); ++a) start_[a] += start_[a - 1];
@@ -95,8 +95,8 @@ bool ArcGraph::add_successions(const LaneGraphProblem& problem, SearchClock& clo
     // The reverse of an arc that leaves the middle cone arrives there, and the other arc leaves it.
     return for_each(turns_.size(), 20, clock, [&](std::size_t k) {
         const Turn& turn = turns_[k];
-        successions_[fill_[static_cast<std::size_t>(turn.arc_i ^ 1)]++] = {turn.arc_k, turn.cost};
-        successions_[fill_[static_cast<std::size_t>(turn.arc_k ^ 1)]++] = {turn.arc_i, turn.cost};
+        successions_[fill_[to_index(turn.arc_i ^ 1)]++] = {turn.arc_k, turn.cost};
+        successions_[fill_[to_index(turn.arc_k ^ 1)]++] = {turn.arc_i, turn.cost};
     });
 }
 
@@ -105,8 +105,8 @@ bool ArcGraph::add_partners(const LaneGraphProblem& problem, SearchClock& clock)
     far_.reset(1, cone_count_);
     apart_.reset(cone_count_, cone_count_);
     for (int cone = 0; cone < cone_count_; ++cone) {
-        const bool is_near = problem.near[static_cast<std::size_t>(cone)];
-        near_[static_cast<std::size_t>(cone)] = is_near ? 1 : 0;
+        const bool is_near = problem.near[to_index(cone)];
+        near_[to_index(cone)] = is_near ? 1 : 0;
         if (!is_near) far_.set(0, cone);
         apart_.set(cone, cone);
     }
@@ -131,14 +131,14 @@ bool ArcGraph::add_partners(const LaneGraphProblem& problem, SearchClock& clock)
 }
 
 bool ArcGraph::find_share_bound(SearchClock& clock) {
-    share_.assign(static_cast<std::size_t>(cone_count_), 0.0);
+    share_.assign(to_index(cone_count_), 0.0);
     for (int arc = 0; arc < arc_count(); ++arc) {
-        double& share = share_[static_cast<std::size_t>(head(arc))];
+        double& share = share_[to_index(head(arc))];
         share = std::min(share, 0.5 * cost(arc / 2));
     }
     const auto lower = [&](std::size_t k) {
         const Turn& turn = turns_[k];
-        double& share = share_[static_cast<std::size_t>(tail(turn.arc_i))];
+        double& share = share_[to_index(tail(turn.arc_i))];
         const double half_i = 0.5 * cost(turn.arc_i / 2);
         const double half_k = 0.5 * cost(turn.arc_k / 2);
         share = std::min(share, half_i + turn.cost + half_k);

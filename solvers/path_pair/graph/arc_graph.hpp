@@ -9,6 +9,11 @@
 
 namespace conelane::path_pair {
 
+/// A number of an arc, an edge, a cone or a frontier, as containers take it.
+[[nodiscard]] constexpr std::size_t to_index(int number) {
+    return static_cast<std::size_t>(number);
+}
+
 /// The problem as a directed graph in which a path's cost is a walk's: every allowed edge e gives the arcs 2
 /// e (from its first cone to its second) and 2 e + 1 (back), and every allowed turn two successions of arcs.
 /// A leg, one path of the lane graph in one of its directions, is a walk a_1 .. a_k of
@@ -27,19 +32,14 @@ class ArcGraph {
     [[nodiscard]] int cone_count() const { return cone_count_; }
     [[nodiscard]] int edge_count() const { return static_cast<int>(problem_edge_.size()); }
     [[nodiscard]] int arc_count() const { return 2 * edge_count(); }
-    [[nodiscard]] int tail(int arc) const { return cone_[static_cast<std::size_t>(arc)]; }
-    [[nodiscard]] int head(int arc) const { return cone_[static_cast<std::size_t>(arc ^ 1)]; }
-    [[nodiscard]] double cost(int edge) const { return cost_[static_cast<std::size_t>(edge)]; }
+    [[nodiscard]] int tail(int arc) const { return cone_[to_index(arc)]; }
+    [[nodiscard]] int head(int arc) const { return cone_[to_index(arc ^ 1)]; }
+    [[nodiscard]] double cost(int edge) const { return cost_[to_index(edge)]; }
     /// h of (9).
-    [[nodiscard]] bool along_heading(int edge) const {
-        return along_heading_[static_cast<std::size_t>(edge)] != 0;
-    }
-    [[nodiscard]] std::size_t problem_edge(int edge) const {
-        return problem_edge_[static_cast<std::size_t>(edge)];
-    }
+    [[nodiscard]] bool along_heading(int edge) const { return along_heading_[to_index(edge)] != 0; }
+    [[nodiscard]] std::size_t problem_edge(int edge) const { return problem_edge_[to_index(edge)]; }
     [[nodiscard]] std::span<const Succession> successions(int arc) const {
-        return {successions_.data() + start_[static_cast<std::size_t>(arc)],
-                successions_.data() + start_[static_cast<std::size_t>(arc) + 1]};
+        return {successions_.data() + start_[to_index(arc)], successions_.data() + start_[to_index(arc) + 1]};
     }
     /// The arc from one cone to another. Precondition: they have an edge.
     [[nodiscard]] int arc(int from, int to) const;
@@ -50,11 +50,11 @@ class ArcGraph {
     [[nodiscard]] std::span<const std::uint64_t> incompatible_row(int edge) const {
         return incompatible_.row(edge);
     }
-    [[nodiscard]] bool near(int cone) const { return near_[static_cast<std::size_t>(cone)] != 0; }
+    [[nodiscard]] bool near(int cone) const { return near_[to_index(cone)] != 0; }
     /// Far cones that may end the other path if the far cone `cone` ends this one (17).
     [[nodiscard]] std::span<const int> partners(int cone) const {
-        return {partners_.data() + partner_start_[static_cast<std::size_t>(cone)],
-                partners_.data() + partner_start_[static_cast<std::size_t>(cone) + 1]};
+        return {partners_.data() + partner_start_[to_index(cone)],
+                partners_.data() + partner_start_[to_index(cone) + 1]};
     }
     [[nodiscard]] bool are_partners(int cone, int other) const { return !apart_.test(cone, other); }
 

@@ -20,16 +20,14 @@ class EdgeSets {
 
     [[nodiscard]] std::size_t words() const { return words_; }
     /// Number of the edge of an arc.
-    [[nodiscard]] std::size_t number(int arc) const {
-        return static_cast<std::size_t>(number_[static_cast<std::size_t>(arc)]);
-    }
+    [[nodiscard]] std::size_t number(int arc) const { return to_index(number_[to_index(arc)]); }
     /// Edges that are excluded after the arc, and for the other leg.
     [[nodiscard]] const std::uint64_t* lost_after(int arc) const {
-        return after_.data() + static_cast<std::size_t>(arc) * words_;
+        return after_.data() + to_index(arc) * words_;
     }
     /// Edges that cannot have been in the leg before the arc, nor be in the other leg.
     [[nodiscard]] const std::uint64_t* lost_before(int arc) const {
-        return before_.data() + static_cast<std::size_t>(arc) * words_;
+        return before_.data() + to_index(arc) * words_;
     }
     [[nodiscard]] static bool contains(const std::uint64_t* set, std::size_t number) {
         return (set[number / 64] >> (number % 64) & 1) != 0;

@@ -17,14 +17,14 @@ bool ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting
 bool ResidualGraph::collect(const ArcGraph& graph, std::span<const char> starting_cone, SearchClock& clock) {
     arc.clear();
     std::vector<int>& index = in_arc;  // rewritten below
-    index.assign(static_cast<std::size_t>(graph.arc_count()), -1);
+    index.assign(to_index(graph.arc_count()), -1);
     const auto reach = [&](int a) {
-        if (index[static_cast<std::size_t>(a)] >= 0) return;
-        index[static_cast<std::size_t>(a)] = size();
+        if (index[to_index(a)] >= 0) return;
+        index[to_index(a)] = size();
         arc.push_back(a);
     };
     for (int a = 0; a < graph.arc_count(); ++a) {
-        if (starting_cone[static_cast<std::size_t>(graph.tail(a))] != 0) reach(a);
+        if (starting_cone[to_index(graph.tail(a))] != 0) reach(a);
     }
     // NOLINTNEXTLINE(modernize-loop-convert): `reach` appends to `arc`
     for (std::size_t done = 0; done < arc.size(); ++done) {
@@ -41,7 +41,7 @@ bool ResidualGraph::collect(const ArcGraph& graph, std::span<const char> startin
         head[a] = graph.head(arc[a]);
         out_start[a + 1] = out_start[a] + static_cast<int>(graph.successions(arc[a]).size());
     }
-    const auto count = static_cast<std::size_t>(out_start.back());
+    const auto count = to_index(out_start.back());
     out_arc.clear();
     out_arc.reserve(count);
     out_cost.clear();
@@ -50,7 +50,7 @@ bool ResidualGraph::collect(const ArcGraph& graph, std::span<const char> startin
         const std::span<const ArcGraph::Succession> successions = graph.successions(a);
         if (clock.out_of_time(5 * successions.size())) return false;
         for (const ArcGraph::Succession& next : successions) {
-            out_arc.push_back(index[static_cast<std::size_t>(next.arc)]);
+            out_arc.push_back(index[to_index(next.arc)]);
             out_cost.push_back(next.cost);
         }
     }
@@ -65,7 +65,7 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
     tail.clear();
     head.clear();
     for (const int old : order) {
-        const auto a = static_cast<std::size_t>(old);
+        const auto a = to_index(old);
         index[a] = size();
         arc.push_back(source.arc[a]);
         tail.push_back(source.tail[a]);
@@ -75,10 +75,10 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
     out_arc.clear();
     out_cost.clear();
     for (const int old : order) {
-        const auto a = static_cast<std::size_t>(old);
+        const auto a = to_index(old);
         for (int position = source.out_start[a]; position < source.out_start[a + 1]; ++position) {
-            const auto p = static_cast<std::size_t>(position);
-            const int next = index[static_cast<std::size_t>(source.out_arc[p])];
+            const auto p = to_index(position);
+            const int next = index[to_index(source.out_arc[p])];
             if (keep_successor[p] == 0 || next < 0) continue;
             out_arc.push_back(next);
             out_cost.push_back(source.out_cost[p]);
@@ -91,17 +91,17 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
 /// False if there is a clock and its time has ended.
 bool ResidualGraph::index_predecessors(SearchClock* clock) {
     in_start.assign(arc.size() + 2, 0);
-    for (const int next : out_arc) ++in_start[static_cast<std::size_t>(next) + 2];
+    for (const int next : out_arc) ++in_start[to_index(next) + 2];
     for (std::size_t a = 2; a < in_start.size(); ++a) in_start[a] += in_start[a - 1];
     in_arc.resize(out_arc.size());
     in_cost.resize(out_arc.size());
     for (int a = 0; a < size(); ++a) {
-        const auto from = static_cast<std::size_t>(a);
-        const auto successions = static_cast<std::size_t>(out_start[from + 1] - out_start[from]);
+        const auto from = to_index(a);
+        const auto successions = to_index(out_start[from + 1] - out_start[from]);
         if (clock != nullptr && clock->out_of_time(5 * successions)) return false;
         for (int position = out_start[from]; position < out_start[from + 1]; ++position) {
-            const auto p = static_cast<std::size_t>(position);
-            const auto slot = static_cast<std::size_t>(in_start[static_cast<std::size_t>(out_arc[p]) + 1]++);
+            const auto p = to_index(position);
+            const auto slot = to_index(in_start[to_index(out_arc[p]) + 1]++);
             in_arc[slot] = a;
             in_cost[slot] = out_cost[p];
         }

@@ -26,7 +26,7 @@ struct ResidualGraph {
     std::vector<double> in_cost;
 
     [[nodiscard]] int size() const { return static_cast<int>(arc.size()); }
-    [[nodiscard]] int edge(int a) const { return arc[static_cast<std::size_t>(a)] / 2; }
+    [[nodiscard]] int edge(int a) const { return arc[to_index(a)] / 2; }
 
     /// All arcs that can be reached from the starting ones, breadth first. Returns false, without arcs, if
     /// the clock expired.

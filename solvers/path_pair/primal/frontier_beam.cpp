@@ -11,26 +11,11 @@ constexpr int kMaxSweeps = 4;
 
 }  // namespace
 
-void FrontierBeam::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
-                        SearchClock& clock) {
-    graph_ = &graph;
-    relaxation_ = &relaxation;
-    incumbent_ = &incumbent;
-    clock_ = &clock;
-}
-
-double FrontierBeam::limit() const {
-    return incumbent_->cutoff() - tolerance_ + relaxation_->offset();
-}
-
-void FrontierBeam::run(const ResidualGraph& residual, const EdgeSets& edges, double tolerance,
-                       std::size_t width) {
+void FrontierBeam::run(const ResidualGraph& residual, std::size_t width) {
     residual_ = &residual;
-    edges_ = &edges;
-    tolerance_ = tolerance;
-    words_ = edges.words();
-    for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
-        relaxation_->onward(residual, kind, leg_onward_[to_index(kind)]);
+    words_ = edges_.words();
+    for (int kind = 0; kind < relaxation_.system().kind_count; ++kind) {
+        relaxation_.onward(residual, kind, leg_onward_[to_index(kind)]);
     }
     labels_.reset(1);
     lost_.reset(words_);
@@ -42,7 +27,7 @@ void FrontierBeam::run(const ResidualGraph& residual, const EdgeSets& edges, dou
         for (settled_ = 0; settled_ < residual.size(); ++settled_) {
             if (waiting_[to_index(settled_)] < 0) continue;
             settle(settled_, width);
-            if (clock_->struck()) return;
+            if (clock_.expired()) return;
         }
     }
 }
@@ -52,17 +37,17 @@ void FrontierBeam::begin(std::size_t width) {
     const ResidualGraph& r = *residual_;
     const int second = kind(1);
     const auto through = [&](int of_kind, int a) {
-        return relaxation_->start(of_kind)[to_index(a)] + relaxation_->reduced()[to_index(a)] +
+        return relaxation_.start(of_kind)[to_index(a)] + relaxation_.reduced()[to_index(a)] +
                leg_onward_[to_index(of_kind)][to_index(a)];
     };
     for (int a = 0; a < r.size(); ++a) {
         if (!(through(0, a) < kUnreachable)) continue;
-        if (clock_->out_of_time(to_index(r.size()))) return;
+        if (clock_.out_of_time(to_index(r.size()))) return;
         here_.clear();
-        for (int b = relaxation_->symmetric() ? a + 1 : 0; b < r.size(); ++b) {
+        for (int b = relaxation_.symmetric() ? a + 1 : 0; b < r.size(); ++b) {
             if (!(through(0, a) + through(second, b) < limit())) continue;
-            if (EdgeSets::contains(edges_->lost_after(a), edges_->number(b)) ||
-                EdgeSets::contains(edges_->lost_before(a), edges_->number(b))) {
+            if (EdgeSets::contains(edges_.lost_after(a), edges_.number(b)) ||
+                EdgeSets::contains(edges_.lost_before(a), edges_.number(b))) {
                 continue;
             }
             here_.push_back(b);
@@ -72,40 +57,37 @@ void FrontierBeam::begin(std::size_t width) {
                           [&](int b, int c) { return through(second, b) < through(second, c); });
         for (std::size_t k = 0; k < kept; ++k) {
             const int b = here_[k];
-            const bool first_moves = a < b;
-            Label label{-1,
-                        first_moves ? a : b,
-                        first_moves ? b : a,
-                        -1,
-                        static_cast<std::uint8_t>(first_moves ? 0 : 1),
-                        false,
-                        0,
-                        0.0,
-                        0.0,
-                        0.0};
-            label.cost = graph_->cost(r.edge(b));
-            label.along_heading = graph_->along_heading(r.edge(b)) ? 1 : 0;
-            label.reduced = relaxation_->start(0)[to_index(a)] + relaxation_->start(second)[to_index(b)] +
-                            relaxation_->reduced()[to_index(b)];
-            label.estimate = through(0, a) + through(second, b);
-            wait(label, edges_->lost_after(b), a);
+            const double reduced = relaxation_.start(0)[to_index(a)] +
+                                   relaxation_.start(second)[to_index(b)] +
+                                   relaxation_.reduced()[to_index(b)];
+            wait({.before = -1,
+                  .moving = std::min(a, b),
+                  .waiting = std::max(a, b),
+                  .next = -1,
+                  .moving_leg = static_cast<std::uint8_t>(a < b ? 0 : 1),
+                  .ended = false,
+                  .along_heading = static_cast<std::int8_t>(graph_.along_heading(r.edge(b)) ? 1 : 0),
+                  .cost = graph_.cost(r.edge(b)),
+                  .reduced = reduced,
+                  .estimate = through(0, a) + through(second, b)},
+                 edges_.lost_after(b), a);
         }
     }
 }
 
 /// Takes `arc` (-1 for none) and lets the label wait.
 void FrontierBeam::wait(Label label, const std::uint64_t* lost_before, int arc) {
-    clock_->out_of_time(20 + 2 * words_);
+    clock_.out_of_time(20 + 2 * words_);
     std::uint64_t* const row = lost_.add();
     std::copy_n(lost_before, words_, row);
     if (arc >= 0) {
         const int edge = residual_->edge(arc);
-        label.cost += graph_->cost(edge);
-        label.reduced += relaxation_->reduced()[to_index(arc)];
-        if (graph_->along_heading(edge)) {
+        label.cost += graph_.cost(edge);
+        label.reduced += relaxation_.reduced()[to_index(arc)];
+        if (graph_.along_heading(edge)) {
             label.along_heading = static_cast<std::int8_t>(std::min(2, label.along_heading + 1));
         }
-        const std::uint64_t* const more = edges_->lost_after(arc);
+        const std::uint64_t* const more = edges_.lost_after(arc);
         for (std::size_t w = 0; w < words_; ++w) row[w] |= more[w];
     }
     label.next = std::exchange(waiting_[to_index(label.moving)], static_cast<int>(labels_.size()));
@@ -118,7 +100,7 @@ void FrontierBeam::settle(int arc, std::size_t width) {
     for (int l = std::exchange(waiting_[to_index(arc)], -1); l >= 0; l = label_at(l).next) {
         if (label_at(l).estimate < limit()) here_.push_back(l);
     }
-    clock_->out_of_time(50 * here_.size());
+    clock_.out_of_time(50 * here_.size());
     // Cheapest first, by true costs: while the multipliers are far off, reduced ones favour two legs along
     // one boundary.
     const auto promise = [&](int l) {
@@ -134,7 +116,7 @@ void FrontierBeam::settle(int arc, std::size_t width) {
             return label_at(l).waiting == label.waiting && label_at(l).ended == label.ended;
         });
         if (same_frontier) continue;
-        if (clock_->struck()) return;
+        if (clock_.expired()) return;
         here_[to_index(static_cast<int>(expanded++))] = here_[k];
         expand(here_[k]);
     }
@@ -146,10 +128,10 @@ void FrontierBeam::expand(int l) {
     const int moving_kind = kind(label.moving_leg);
     const auto other_leg = static_cast<std::uint8_t>(1 - label.moving_leg);
     const int other_kind = kind(other_leg);
-    if (relaxation_->may_end(r, moving_kind, label.moving)) {
+    if (relaxation_.may_end(r, moving_kind, label.moving)) {
         if (label.ended) {
-            if (label.cost < incumbent_->cutoff() - tolerance_ && label.along_heading >= 2 &&
-                relaxation_->ends_fit(r.head[to_index(label.moving)], r.head[to_index(label.waiting)])) {
+            if (label.cost < incumbent_.limit() && label.along_heading >= 2 &&
+                relaxation_.ends_fit(r.head[to_index(label.moving)], r.head[to_index(label.waiting)])) {
                 offer(l);
             }
         } else {
@@ -171,10 +153,10 @@ void FrontierBeam::expand(int l) {
     for (int p = r.out_start[to_index(label.moving)]; p < r.out_start[to_index(label.moving) + 1]; ++p) {
         const int arc = r.out_arc[to_index(p)];
         const double estimate = label.reduced + r.out_cost[to_index(p)] +
-                                relaxation_->reduced()[to_index(arc)] +
+                                relaxation_.reduced()[to_index(arc)] +
                                 leg_onward_[to_index(moving_kind)][to_index(arc)] + rest;
         if (!(estimate < limit()) || r.head[to_index(arc)] == r.head[to_index(label.waiting)] ||
-            EdgeSets::contains(lost_here_.data(), edges_->number(arc))) {
+            EdgeSets::contains(lost_here_.data(), edges_.number(arc))) {
             continue;
         }
         Label on = label;
@@ -205,7 +187,7 @@ void FrontierBeam::offer(int label) {
         }
     }
     for (std::vector<int>& leg : legs_) std::ranges::reverse(leg);
-    incumbent_->offer(legs_[0], legs_[1]);
+    incumbent_.offer(legs_[0], legs_[1]);
 }
 
 }  // namespace conelane::path_pair

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/graph/to_index.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
@@ -22,11 +22,13 @@ namespace conelane::path_pair {
 /// cheapest ways on.
 class FrontierBeam {
   public:
-    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent, SearchClock& clock);
+    FrontierBeam(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
+                 const EdgeSets& edges, SearchClock& clock)
+        : graph_(graph), relaxation_(relaxation), incumbent_(incumbent), edges_(edges), clock_(clock) {}
 
     /// Offers the incumbent every pair of legs that is reached. `width`: beginnings expanded at an arc.
-    /// Precondition: the relaxation was evaluated on the residual graph, `edges` are its sets.
-    void run(const ResidualGraph& residual, const EdgeSets& edges, double tolerance, std::size_t width);
+    /// Precondition: the relaxation was evaluated on the residual graph, the edge sets are its sets.
+    void run(const ResidualGraph& residual, std::size_t width);
 
   private:
     struct Label {
@@ -42,8 +44,9 @@ class FrontierBeam {
         double estimate;
     };
 
-    [[nodiscard]] int kind(int leg) const { return relaxation_->symmetric() ? 0 : leg; }
-    [[nodiscard]] double limit() const;
+    [[nodiscard]] int kind(int leg) const { return relaxation_.symmetric() ? 0 : leg; }
+    /// With offset.
+    [[nodiscard]] double limit() const { return incumbent_.limit() + relaxation_.offset(); }
     [[nodiscard]] const std::uint64_t* lost(int label) const { return lost_.row(to_index(label)); }
     [[nodiscard]] const Label& label_at(int number) const { return *labels_.row(to_index(number)); }
     void begin(std::size_t width);
@@ -52,13 +55,12 @@ class FrontierBeam {
     void expand(int label);
     void offer(int label);
 
-    const ArcGraph* graph_ = nullptr;
-    PairRelaxation* relaxation_ = nullptr;
-    Incumbent* incumbent_ = nullptr;
-    SearchClock* clock_ = nullptr;
+    const ArcGraph& graph_;
+    PairRelaxation& relaxation_;
+    Incumbent& incumbent_;
+    const EdgeSets& edges_;
+    SearchClock& clock_;
     const ResidualGraph* residual_ = nullptr;
-    const EdgeSets* edges_ = nullptr;
-    double tolerance_ = 0.0;
     std::size_t words_ = 0;
     std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc
     BlockRows<Label> labels_;

@@ -4,9 +4,9 @@
 
 namespace conelane::path_pair {
 
-void Incumbent::reset(const ArcGraph& graph, double cutoff) {
-    graph_ = &graph;
+void Incumbent::reset(double cutoff, double tolerance) {
     cutoff_ = cutoff;
+    tolerance_ = tolerance;
     found_ = false;
     edges_.clear();
 }
@@ -46,15 +46,15 @@ bool Incumbent::offer(std::span<const int> first, std::span<const int> second) {
     const double cost = leg_cost(first) + leg_cost(second);
     if (!(cost < cutoff_)) return false;
     if (!has_ends_of_a_lane(first, second)) return false;
-    visited_.assign(static_cast<std::size_t>(graph_->cone_count()), 0);
+    visited_.assign(to_index(graph_->cone_count()), 0);
     candidate_.clear();
     int along_heading = 0;
     for (const std::span<const int> leg : {first, second}) {
-        char& start = visited_[static_cast<std::size_t>(graph_->tail(leg.front()))];
+        char& start = visited_[to_index(graph_->tail(leg.front()))];
         if (start != 0) return false;
         start = 1;
         for (const int arc : leg) {
-            char& visited = visited_[static_cast<std::size_t>(graph_->head(arc))];
+            char& visited = visited_[to_index(graph_->head(arc))];
             if (visited != 0) return false;
             visited = 1;
             candidate_.push_back(arc / 2);

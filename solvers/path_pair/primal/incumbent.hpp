@@ -11,7 +11,10 @@ namespace conelane::path_pair {
 /// The best lane graph so far. It accepts nothing that breaks a constraint, from any caller.
 class Incumbent {
   public:
-    void reset(const ArcGraph& graph, double cutoff);
+    explicit Incumbent(const ArcGraph& graph) : graph_(&graph) {}
+
+    /// `tolerance`: a search leaves out what is not cheaper by more than this.
+    void reset(double cutoff, double tolerance);
 
     /// Legs as arcs of the arc graph. A leg between a near cone and a far one has to run to the far one.
     /// Returns true if the legs are a lane graph that costs less than the incumbent or the first cutoff. The
@@ -22,6 +25,9 @@ class Incumbent {
     /// Only lane graphs of lower cost are of use.
     [[nodiscard]] double cutoff() const { return cutoff_; }
     void set_cutoff(double cutoff) { cutoff_ = cutoff; }
+    [[nodiscard]] double tolerance() const { return tolerance_; }
+    /// Below it a search has to look.
+    [[nodiscard]] double limit() const { return cutoff_ - tolerance_; }
     /// Edges of the arc graph.
     [[nodiscard]] std::span<const int> edges() const { return edges_; }
     /// Arcs of the arc graph, as they were offered.
@@ -37,8 +43,9 @@ class Incumbent {
   private:
     [[nodiscard]] bool has_ends_of_a_lane(std::span<const int> first, std::span<const int> second) const;
 
-    const ArcGraph* graph_ = nullptr;
+    const ArcGraph* graph_;
     double cutoff_ = 0.0;
+    double tolerance_ = 0.0;
     bool found_ = false;
     std::vector<int> edges_;
     std::array<std::vector<int>, 2> legs_;

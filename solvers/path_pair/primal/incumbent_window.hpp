@@ -3,7 +3,6 @@
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <array>
 #include <cstddef>
@@ -18,10 +17,13 @@ namespace conelane::path_pair {
 /// their ends back, so legs that end too early grow first.
 class IncumbentWindow {
   public:
-    /// The graph that windows are cut from. `usable` by arc of the arc graph: arcs that a better lane graph
-    /// may have. Precondition: the legs of the system are alike.
-    void assign(const ArcGraph& graph, const LegSystem& system, const ResidualGraph& whole,
-                std::span<const char> usable);
+    /// Windows are cut from the whole graph.
+    IncumbentWindow(const ArcGraph& graph, const LegSystem& system, const ResidualGraph& whole)
+        : graph_(graph), whole_system_(system), whole_(whole) {}
+
+    /// `usable` by arc of the arc graph: arcs that a better lane graph may have. Precondition: the legs of
+    /// the system are alike.
+    void assign(std::span<const char> usable);
     /// Starts windows of about this many arcs, with all cones as centres.
     void restart(std::size_t max_arcs);
 
@@ -40,13 +42,13 @@ class IncumbentWindow {
     void spread(int centre);
     void fix_outside(std::span<const int> leg, LegSystem::Kind& kind);
     [[nodiscard]] bool is_inside(int arc) const {
-        return place_[to_index(graph_->tail(arc))] == Place::inside &&
-               place_[to_index(graph_->head(arc))] == Place::inside;
+        return place_[to_index(graph_.tail(arc))] == Place::inside &&
+               place_[to_index(graph_.head(arc))] == Place::inside;
     }
 
-    const ArcGraph* graph_ = nullptr;
-    const LegSystem* whole_system_ = nullptr;
-    const ResidualGraph* whole_ = nullptr;
+    const ArcGraph& graph_;
+    const LegSystem& whole_system_;
+    const ResidualGraph& whole_;
     std::vector<char> usable_;
     std::vector<int> next_start_;  ///< by cone
     std::vector<int> next_;        ///< cones that usable arcs lead to from a cone

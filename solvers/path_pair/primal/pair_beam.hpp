@@ -2,7 +2,6 @@
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/to_index.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
@@ -23,11 +22,14 @@ class PairBeam {
         std::size_t width;  ///< number of beginnings that go on
         int max_at_cone;    ///< among these, number of legs that end at the same cone
     };
-    /// For one search; graph and system must outlive it. Lists the pairs of first arcs, which all its beams
-    /// begin with. Precondition: the legs of the system are alike.
-    void begin(const ArcGraph& graph, const LegSystem& system, SearchClock& clock);
+    PairBeam(const ArcGraph& graph, const LegSystem& system, SearchClock& clock)
+        : graph_(graph), system_(system), clock_(clock) {}
+
+    /// Lists the pairs of first arcs, which all beams of a search begin with. Precondition: the legs of the
+    /// system are alike.
+    void find_first_steps();
     /// Offers the incumbent the best pair that is met.
-    void run(const Limits& limits, Incumbent& incumbent, SearchClock& clock);
+    void run(const Limits& limits, Incumbent& incumbent);
 
   private:
     struct Label {
@@ -45,7 +47,7 @@ class PairBeam {
     };
 
     [[nodiscard]] bool starts(int arc) const {
-        return system_->kinds[0].start[to_index(graph_->tail(arc))] != 0;
+        return system_.kinds[0].start[to_index(graph_.tail(arc))] != 0;
     }
     [[nodiscard]] std::uint64_t* lost(std::size_t number) { return lost_.data() + number * words_; }
     /// Adds the ways on from a label to steps_, and returns how many there are. Of those to the same pair of
@@ -55,9 +57,8 @@ class PairBeam {
     void grow_places();
     /// The place of the step to these last arcs, or the free one where it belongs.
     [[nodiscard]] std::size_t place_of(const std::array<int, 2>& last) const;
-    void take_cheapest_first_steps(SearchClock& clock);
-    void take_cheapest_steps(SearchClock& clock);
-    void begin_level();
+    void take_cheapest_first_steps();
+    void take_cheapest_steps();
     [[nodiscard]] bool is_full() const { return labels_.size() - next_ >= limits_.width; }
     void take(const Step& step);
     void add_label(const Step& step);
@@ -67,8 +68,9 @@ class PairBeam {
     void take_cone(int cone, std::uint64_t* lost) const;
     void offer(int label, Incumbent& incumbent);
 
-    const ArcGraph* graph_ = nullptr;
-    const LegSystem* system_ = nullptr;
+    const ArcGraph& graph_;
+    const LegSystem& system_;
+    SearchClock& clock_;
     Limits limits_{};
     std::size_t edge_words_ = 0;
     std::size_t words_ = 0;
@@ -86,8 +88,8 @@ class PairBeam {
     };
     std::vector<Place> places_;
     std::size_t place_level_ = 0;  ///< counts levels over all beams
-    std::vector<std::uint64_t>
-        lost_;  ///< by label from level_ on: edges that are excluded, cones that are taken
+    /// By label from level_ on: edges that are excluded, cones that are taken.
+    std::vector<std::uint64_t> lost_;
     std::vector<std::uint64_t> lost_next_;  ///< by label from next_ on
     std::array<std::vector<int>, 2> legs_;
 };

@@ -1,17 +1,14 @@
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 
 namespace conelane::path_pair {
 
-void SecondLegBound::reset(const ArcGraph& graph, SearchClock& clock) {
-    graph_ = &graph;
-    clock_ = &clock;
-    bounds_.bind(clock);
-    multipliers_.cone.assign(to_index(graph.cone_count()), 0.0);
-    none_required_.assign(to_index(graph.cone_count()), 0);
+void SecondLegBound::reset() {
+    multipliers_.cone.assign(to_index(graph_.cone_count()), 0.0);
+    none_required_.assign(to_index(graph_.cone_count()), 0);
     before_.clear();
 }
 
@@ -40,12 +37,12 @@ void SecondLegBound::assign(const PairRelaxation& relaxation, const ResidualGrap
 }
 
 void SecondLegBound::leave_out(std::span<const int> first) {
-    taken_.assign(to_index(graph_->cone_count()), 0);
-    blocked_.assign((to_index(graph_->edge_count()) + 63) / 64, 0);
+    taken_.assign(to_index(graph_.cone_count()), 0);
+    blocked_.assign((to_index(graph_.edge_count()) + 63) / 64, 0);
     taken_[to_index(residual_->tail[to_index(first.front())])] = 1;
     for (const int a : first) {
         taken_[to_index(residual_->head[to_index(a)])] = 1;
-        const std::span<const std::uint64_t> row = graph_->incompatible_row(residual_->edge(a));
+        const std::span<const std::uint64_t> row = graph_.incompatible_row(residual_->edge(a));
         for (std::size_t w = 0; w < blocked_.size(); ++w) blocked_[w] |= row[w];
     }
 }
@@ -61,7 +58,7 @@ void SecondLegBound::reduce_costs() {
             continue;
         }
         reduced_[to_index(a)] =
-            graph_->cost(residual_->edge(a)) + multiplier[to_index(residual_->head[to_index(a)])];
+            graph_.cost(residual_->edge(a)) + multiplier[to_index(residual_->head[to_index(a)])];
         start_[to_index(a)] = start[to_index(a)] < kUnreachable
                                   ? multiplier[to_index(residual_->tail[to_index(a)])]
                                   : kUnreachable;
@@ -77,7 +74,7 @@ bool SecondLegBound::evaluate(std::int64_t& budget) {
         reduce_costs();
         budget -= residual_->size();
         const bool bounded = bounds_.forward(*residual_, reduced_, start_, forward_, before_, cycles_);
-        if (clock_->out_of_time(residual_->out_arc.size())) return false;
+        if (clock_.out_of_time(residual_->out_arc.size())) return false;
         if (bounded) break;
         raise_cycles(*residual_, cycles_, reduced_, multipliers_.cone);
     }
@@ -115,7 +112,7 @@ bool SecondLegBound::evaluate_backward() {
         if (forward_[to_index(a)] == kUnreachable) usable_[to_index(a)] = 0;
     }
     bounds_.backward(*residual_, reduced_, end_, usable_, backward_);
-    return !clock_->out_of_time(residual_->out_arc.size());
+    return !clock_.out_of_time(residual_->out_arc.size());
 }
 
 }  // namespace conelane::path_pair

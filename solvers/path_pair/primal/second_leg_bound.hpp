@@ -16,8 +16,11 @@ namespace conelane::path_pair {
 /// the legs; multipliers on cones keep walks from cycles. They are kept from one first leg to the next.
 class SecondLegBound {
   public:
-    /// Sets the multipliers to 0.
-    void reset(const ArcGraph& graph, SearchClock& clock);
+    SecondLegBound(const ArcGraph& graph, SearchClock& clock)
+        : graph_(graph), clock_(clock), bounds_(clock) {}
+
+    /// Sets the multipliers to 0. Call it for each graph, and for each search that is to begin anew.
+    void reset();
 
     /// The second legs of `kind` that go with `first`, arcs of the residual graph. Precondition: the
     /// relaxation was evaluated on it.
@@ -39,7 +42,12 @@ class SecondLegBound {
     bool evaluate_backward();
     /// For legs whose cost with offset is below a cutoff. Precondition: backward labels are evaluated.
     [[nodiscard]] LegSearch::Query query() const {
-        return {*graph_, *residual_, reduced_, start_, end_, backward_};
+        return {.graph = graph_,
+                .residual = *residual_,
+                .reduced = reduced_,
+                .start = start_,
+                .end = end_,
+                .backward = backward_};
     }
     [[nodiscard]] double offset() const { return offset_; }
 
@@ -48,8 +56,8 @@ class SecondLegBound {
     void reduce_costs();
     void take_cheapest_walk();
 
-    const ArcGraph* graph_ = nullptr;
-    SearchClock* clock_ = nullptr;
+    const ArcGraph& graph_;
+    SearchClock& clock_;
     const PairRelaxation* relaxation_ = nullptr;
     const ResidualGraph* residual_ = nullptr;
     int kind_ = 0;

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -8,17 +8,28 @@
 
 namespace conelane::path_pair {
 
-BranchAndBound::BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options)
+BranchAndBound::BranchAndBound(const ArcGraph& graph, const LegSystem& system, Incumbent& incumbent,
+                               const PathPairOptions& options, SearchClock& clock)
     : graph_(graph),
+      system_(system),
       incumbent_(incumbent),
       options_(options),
-      ascent_(graph, incumbent, options),
-      improver_(graph, incumbent, options),
+      clock_(clock),
+      second_leg_(graph, clock),
+      ascent_({.graph = graph,
+               .system = system,
+               .incumbent = incumbent,
+               .options = options,
+               .cliques = cliques_,
+               .decisions = decisions_,
+               .second_leg = second_leg_,
+               .clock = clock}),
+      improver_(graph, system, incumbent, options, cliques_, second_leg_, clock),
       brancher_(graph, options.tuning.branching),
       queue_(options.tuning.branching.max_open_nodes) {}
 
-BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance, SearchClock& clock) {
-    begin(system, tolerance, clock);
+BranchAndBound::Outcome BranchAndBound::run() {
+    restart();
     root_.bound = graph_.share_bound();
     ++nodes_;
     double open_bound = kUnreachable;
@@ -26,13 +37,13 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     while (open_bound == kUnreachable && !queue_.empty()) {
         std::unique_ptr<Node> next = queue_.take_next();
         improver_.improve(root_.graph, next->bound);
-        if (next->bound < cutoff()) {
+        if (next->bound < incumbent_.limit()) {
             ++nodes_;
             if (explore(*next) == Verdict::stopped) open_bound = std::min(next->bound, queue_.min_bound());
         }
         queue_.give_back(std::move(next));
     }
-    return {std::min(open_bound, cutoff()), open_bound == kUnreachable};
+    return {std::min(open_bound, incumbent_.limit()), open_bound == kUnreachable};
 }
 
 /// Bounds and searches the node, and branches where that leaves it open.
@@ -53,7 +64,8 @@ Verdict BranchAndBound::explore(Node& node) {
 
 Verdict BranchAndBound::ascend(Node& node) {
     const FrontierTuning& tuning = options_.tuning.frontiers;
-    return ascent_.run(node, {options_.tuning.ascent.node, {tuning.max_frontiers, true}});
+    return ascent_.run(
+        node, {.patience = options_.tuning.ascent.node, .last_search = {tuning.max_frontiers, true}});
 }
 
 /// With windows for incumbents between the steps.
@@ -103,43 +115,33 @@ void BranchAndBound::add_children(const Node& parent, const Branching& branching
     }
 }
 
-double BranchAndBound::run_root(const LegSystem& system, double tolerance, SearchClock& clock) {
-    begin(system, tolerance, clock);
+double BranchAndBound::run_root() {
+    restart();
     ascend_root();
     return root_.bound;
 }
 
-std::vector<Multipliers> BranchAndBound::run_root_in_stages(const LegSystem& system, double unit,
-                                                            SearchClock& clock) {
+std::vector<Multipliers> BranchAndBound::run_root_in_stages(double unit) {
     MultiplierStages stages(unit);
-    begin(system, 0.0, clock, &stages);
+    restart(&stages);
     ascend_root();
     if (root_.bound > -kUnreachable) stages.add(root_multipliers());
     return stages.take();
 }
 
-void BranchAndBound::begin(const LegSystem& system, double tolerance, SearchClock& clock,
-                           MultiplierStages* stages) {
-    tolerance_ = tolerance;
+void BranchAndBound::restart(MultiplierStages* stages) {
     cliques_.clear();
     decisions_.reset(graph_);
-    second_leg_.reset(graph_, clock);
-    ascent_.bind(system, {cliques_, decisions_, second_leg_, tolerance, clock, stages});
-    begin_root(system, clock);
-    improver_.begin(system, starting_, cliques_, second_leg_, tolerance, clock);
-    queue_.clear();
-}
-
-void BranchAndBound::begin_root(const LegSystem& system, SearchClock& clock) {
-    starting_ = system.kinds[0].start;
+    second_leg_.reset();
+    ascent_.restart(stages);
+    starting_ = system_.kinds[0].start;
     for (std::size_t cone = 0; cone < starting_.size(); ++cone) {
-        if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting_[cone] = 1;
+        if (system_.kind_count == 2 && system_.kinds[1].start[cone] != 0) starting_[cone] = 1;
     }
-    root_.graph.assign(graph_, starting_, clock);
-    root_.multipliers.cone.assign(to_index(graph_.cone_count()), 0.0);
-    root_.multipliers.clique.clear();
-    root_.multipliers.heading = 0.0;
-    root_.bound = -kUnreachable;
+    root_.graph.assign(graph_, starting_, clock_);
+    root_.restart(graph_, 0);
+    improver_.restart();
+    queue_.clear();
 }
 
 }  // namespace conelane::path_pair

@@ -8,10 +8,8 @@
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "solvers/path_pair/search/brancher.hpp"
 #include "solvers/path_pair/search/incumbent_improver.hpp"
-#include "solvers/path_pair/search/multiplier_stages.hpp"
 #include "solvers/path_pair/search/node.hpp"
 #include "solvers/path_pair/search/node_ascent.hpp"
-#include "solvers/path_pair/search/node_queue.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
 #include <cstdint>
@@ -23,23 +21,25 @@ namespace conelane::path_pair {
 /// node closes nearly every node; the others are branched.
 class BranchAndBound {
   public:
-    BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
+    /// Graph, system and clock may change from search to search.
+    BranchAndBound(const ArcGraph& graph, const LegSystem& system, Incumbent& incumbent,
+                   const PathPairOptions& options, SearchClock& clock);
 
     struct Outcome {
         /// Bound of every lane graph of the system that is cheaper than the cutoff less the tolerance.
         double bound;
         bool complete;
     };
-    /// All pairs of legs of a system that cost less than the incumbent by more than `tolerance`.
-    Outcome run(const LegSystem& system, double tolerance, SearchClock& clock);
+    /// All pairs of legs of the system that cost less than the incumbent by more than its tolerance.
+    Outcome run();
 
     /// Only the root's ascent: its best bound, minus infinity if stopped before there was one.
-    double run_root(const LegSystem& system, double tolerance, SearchClock& clock);
+    double run_root();
 
     /// The root's ascent without incumbents of its own. Multipliers are multiples of `unit`, and cycles do
     /// not gain with them. Returns the multipliers that dropped something, in order, and finally the best
     /// ones; only those that reach the cutoff if some do. Empty if stopped before there were any.
-    std::vector<Multipliers> run_root_in_stages(const LegSystem& system, double unit, SearchClock& clock);
+    std::vector<Multipliers> run_root_in_stages(double unit);
 
     [[nodiscard]] std::int64_t nodes() const { return nodes_; }
     void reset_nodes() { nodes_ = 0; }
@@ -49,20 +49,18 @@ class BranchAndBound {
     [[nodiscard]] const CliquePool& cliques() const { return cliques_; }
 
   private:
-    void begin(const LegSystem& system, double tolerance, SearchClock& clock,
-               MultiplierStages* stages = nullptr);
-    void begin_root(const LegSystem& system, SearchClock& clock);
+    void restart(MultiplierStages* stages = nullptr);
     Verdict explore(Node& node);
     Verdict ascend(Node& node);
     Verdict ascend_root();
     void take_decisions(const Node& node);
     void add_children(const Node& parent, const Branching& branching);
-    [[nodiscard]] double cutoff() const { return incumbent_.cutoff() - tolerance_; }
 
     const ArcGraph& graph_;
+    const LegSystem& system_;
     Incumbent& incumbent_;
     const PathPairOptions& options_;
-    double tolerance_ = 0.0;
+    SearchClock& clock_;
     CliquePool cliques_;
     Decisions decisions_;  ///< of the current node
     SecondLegBound second_leg_;

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/search/brancher.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 

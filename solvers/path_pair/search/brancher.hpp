@@ -1,10 +1,9 @@
 #pragma once
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/bound/walk_usage.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/path_pair_options.hpp"
 #include "solvers/path_pair/search/node.hpp"
-#include "solvers/path_pair/search_tuning.hpp"
 
 #include <vector>
 

@@ -1,19 +1,10 @@
 #include "solvers/path_pair/search/frontier_solve.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 
 namespace conelane::path_pair {
-
-void FrontierSolve::bind(PairRelaxation& relaxation, double tolerance, SearchClock& clock) {
-    relaxation_ = &relaxation;
-    tolerance_ = tolerance;
-    clock_ = &clock;
-    frontiers_.bind(relaxation, clock);
-    search_.bind(graph_, relaxation, incumbent_, clock);
-    beam_.bind(graph_, relaxation, incumbent_, clock);
-}
 
 Verdict FrontierSolve::search_by_target(const ResidualGraph& graph, const TargetLimits& limits,
                                         double& bound) {
@@ -43,7 +34,7 @@ Verdict FrontierSolve::search_below(const ResidualGraph& graph, double target, s
     const Verdict verdict = search(graph, {max_frontiers, tuning().max_labels});
     if (incumbent_.cutoff() < target) return verdict;
     incumbent_.set_cutoff(incumbent);
-    if (verdict == Verdict::closed) bound = std::max(bound, target - tolerance_);
+    if (verdict == Verdict::closed) bound = std::max(bound, target - incumbent_.tolerance());
     return verdict;
 }
 
@@ -59,15 +50,15 @@ Verdict FrontierSolve::search(const ResidualGraph& graph, const Limits& limits) 
 /// Builds the frontiers and drops what it can. Returns a verdict if no frontier needs, or allows, a search.
 std::optional<Verdict> FrontierSolve::build(const ResidualGraph& graph, const Limits& limits) {
     const bool drop_dominated = options_.drop_dominated_edges;
-    edge_sets_.assign(graph_, graph, *clock_);
+    edge_sets_.assign(graph_, graph, clock_);
     if (limits.beam_width > 0) run_beam(graph, limits.beam_width);
-    if (clock_->struck()) return Verdict::stopped;
-    dominated_edges_.find(graph, *relaxation_, edge_sets_, drop_dominated, *clock_);
-    if (clock_->struck()) return Verdict::stopped;
+    if (clock_.expired()) return Verdict::stopped;
+    dominated_edges_.find(graph, relaxation_, edge_sets_, drop_dominated, clock_);
+    if (clock_.expired()) return Verdict::stopped;
     const bool built = frontiers_.build(graph, dominated_edges_, limit(), limits.frontiers,
                                         drop_dominated ? &edge_sets_ : nullptr);
-    clock_->out_of_time(tuning().work_per_frontier * to_index(frontiers_.size()));
-    if (!built) return clock_->out_of_time() ? Verdict::stopped : Verdict::open;
+    clock_.out_of_time(tuning().work_per_frontier * to_index(frontiers_.size()));
+    if (!built) return clock_.out_of_time() ? Verdict::stopped : Verdict::open;
     double bound = frontiers_.find_onward(limit());
     if (drop_dominated && bound < limit()) {
         frontiers_.drop(limit());
@@ -75,7 +66,7 @@ std::optional<Verdict> FrontierSolve::build(const ResidualGraph& graph, const Li
         frontiers_.find_forward();
         bound = frontiers_.find_onward(limit());
     }
-    if (clock_->out_of_time()) return Verdict::stopped;
+    if (clock_.out_of_time()) return Verdict::stopped;
     if (!(bound < limit())) return Verdict::closed;
     frontiers_.drop(limit());
     return std::nullopt;
@@ -83,14 +74,13 @@ std::optional<Verdict> FrontierSolve::build(const ResidualGraph& graph, const Li
 
 /// Labels on the frontiers. If there are many, a narrow search comes first: an incumbent drops many.
 Verdict FrontierSolve::search_built(std::size_t max_labels) {
-    const bool is_wide = frontiers_.size() >= tuning().wide_frontiers;
+    const bool was_wide = is_wide();
     find_tables();
     for (const std::size_t width : {tuning().narrow_labels, FrontierSearch::kAnyWidth}) {
-        if (clock_->out_of_time()) return Verdict::stopped;
-        if (width == tuning().narrow_labels && !is_wide) continue;
+        if (clock_.out_of_time()) return Verdict::stopped;
+        if (width == tuning().narrow_labels && !was_wide) continue;
         const double before = incumbent_.cutoff();
-        const FrontierSearch::Outcome outcome =
-            search_.run(frontiers_, edge_sets_, onward_tables_, {tolerance_, width, max_labels});
+        const FrontierSearch::Outcome outcome = search_.run({width, max_labels});
         if (outcome == FrontierSearch::Outcome::exhausted) return Verdict::closed;
         if (outcome == FrontierSearch::Outcome::stopped) break;
         if (incumbent_.cutoff() < before) {
@@ -98,12 +88,7 @@ Verdict FrontierSolve::search_built(std::size_t max_labels) {
             find_tables();
         }
     }
-    return clock_->out_of_time() ? Verdict::stopped : Verdict::open;
-}
-
-void FrontierSolve::find_tables() {
-    onward_tables_.find(frontiers_, edge_sets_, limit(), frontiers_.size() >= tuning().wide_frontiers,
-                        *clock_);
+    return clock_.out_of_time() ? Verdict::stopped : Verdict::open;
 }
 
 }  // namespace conelane::path_pair

@@ -36,9 +36,17 @@ class FrontierSolve {
         bool lowers_targets;    ///< where a target has too many
     };
 
-    FrontierSolve(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options)
-        : graph_(graph), incumbent_(incumbent), options_(options) {}
-    void bind(PairRelaxation& relaxation, double tolerance, SearchClock& clock);
+    FrontierSolve(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
+                  const PathPairOptions& options, SearchClock& clock)
+        : graph_(graph),
+          relaxation_(relaxation),
+          incumbent_(incumbent),
+          options_(options),
+          clock_(clock),
+          frontiers_(relaxation, clock),
+          onward_tables_(frontiers_, edge_sets_, clock),
+          search_(graph, relaxation, incumbent, frontiers_, edge_sets_, onward_tables_, clock),
+          beam_(graph, relaxation, incumbent, edge_sets_, clock) {}
 
     /// Open where there are more frontiers or labels than the limits.
     Verdict search(const ResidualGraph& graph, const Limits& limits);
@@ -50,25 +58,23 @@ class FrontierSolve {
     Verdict search_by_target(const ResidualGraph& graph, const TargetLimits& limits, double& bound);
 
     /// An incumbent by a beam. Precondition: the last search was that of this graph.
-    void run_beam(const ResidualGraph& graph, std::size_t width) {
-        beam_.run(graph, edge_sets_, tolerance_, width);
-    }
+    void run_beam(const ResidualGraph& graph, std::size_t width) { beam_.run(graph, width); }
 
   private:
     std::optional<Verdict> build(const ResidualGraph& graph, const Limits& limits);
     Verdict search_built(std::size_t max_labels);
     Verdict search_below(const ResidualGraph& graph, double target, std::size_t max_frontiers, double& bound);
-    void find_tables();
+    void find_tables() { onward_tables_.find(limit(), is_wide()); }
+    [[nodiscard]] bool is_wide() const { return frontiers_.size() >= tuning().wide_frontiers; }
     /// With offset.
-    [[nodiscard]] double limit() const { return incumbent_.cutoff() - tolerance_ + relaxation_->offset(); }
+    [[nodiscard]] double limit() const { return incumbent_.limit() + relaxation_.offset(); }
     [[nodiscard]] const FrontierTuning& tuning() const { return options_.tuning.frontiers; }
 
     const ArcGraph& graph_;
+    PairRelaxation& relaxation_;
     Incumbent& incumbent_;
     const PathPairOptions& options_;
-    PairRelaxation* relaxation_ = nullptr;
-    double tolerance_ = 0.0;
-    SearchClock* clock_ = nullptr;
+    SearchClock& clock_;
     EdgeSets edge_sets_;
     DominatedEdges dominated_edges_;
     FrontierGraph frontiers_;

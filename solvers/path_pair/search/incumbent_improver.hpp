@@ -13,7 +13,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace conelane::path_pair {
@@ -24,19 +23,20 @@ namespace conelane::path_pair {
 /// ones so far.
 class IncumbentImprover {
   public:
-    IncumbentImprover(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
+    /// The shared cliques and bounds of second legs are those of a search without decisions.
+    IncumbentImprover(const ArcGraph& graph, const LegSystem& system, Incumbent& incumbent,
+                      const PathPairOptions& options, CliquePool& cliques, SecondLegBound& second_leg,
+                      SearchClock& clock);
 
-    /// For one search. `starting` by cone: where legs of the system start. The shared relaxation has no
-    /// decisions.
-    void begin(const LegSystem& system, std::span<const char> starting, CliquePool& cliques,
-               SecondLegBound& second_leg, double tolerance, SearchClock& clock);
+    /// For another search.
+    void restart();
 
     /// Continues, for a share of the work that is larger if `bound` is far from the incumbent. `alive`: arcs
     /// that a better lane graph may use.
     void improve(const ResidualGraph& alive, double bound);
 
     /// The target of the root's ascent.
-    [[nodiscard]] const NodeAscent::Aim& aim() const { return aim_; }
+    [[nodiscard]] const NodeAscent::Aim& aim() const { return state_.aim; }
 
   private:
     /// Takes the incumbent for the pair, if the search found a new one.
@@ -48,30 +48,31 @@ class IncumbentImprover {
     bool search_window();
     [[nodiscard]] const WindowTuning& tuning() const { return options_.tuning.windows; }
 
+    /// Of one search.
+    struct State {
+        bool has_pair = false;                            ///< that is improved
+        std::optional<std::size_t> new_window_arcs = {};  ///< for the pair, if its windows have not begun
+        std::size_t phase = 0;
+        int idle_beams = 0;         ///< the last ones, which brought no new pair
+        std::int64_t own_work = 0;  ///< of the clock, up to now
+        NodeAscent::Aim aim = {};
+        bool has_whole = false;
+        bool has_first_steps = false;  ///< of the beam
+    };
+
     const ArcGraph& graph_;
+    const LegSystem& system_;
     Incumbent& incumbent_;
     const PathPairOptions& options_;
-    const LegSystem* system_ = nullptr;
-    std::span<const char> starting_;
-    CliquePool* cliques_ = nullptr;
-    SecondLegBound* second_leg_ = nullptr;
-    double tolerance_ = 0.0;
-    SearchClock* clock_ = nullptr;
+    CliquePool& cliques_;
+    SearchClock& clock_;
 
-    Incumbent pair_;  ///< the pair that is improved
-    bool has_pair_ = false;
-    std::optional<std::size_t> new_window_arcs_;  ///< for the pair, if its windows have not begun
-    std::size_t phase_ = 0;
-    int idle_beams_ = 0;               ///< the last ones, which brought no new pair
+    State state_;
+    Incumbent pair_;                   ///< the pair that is improved
     std::vector<double> start_costs_;  ///< of pairs from beams
-    std::int64_t own_work_ = 0;        ///< of the clock, up to now
-    NodeAscent::Aim aim_;
-
-    ResidualGraph whole_;  ///< what windows are cut from
-    bool has_whole_ = false;
+    ResidualGraph whole_;              ///< what windows are cut from
     IncumbentWindow window_;
     PairBeam beam_;
-    bool has_beam_ = false;  ///< begun for this search
     Decisions no_decisions_;
     NodeAscent ascent_;
     Node node_;

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/search/node_ascent.hpp"
 
-#include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,18 +8,27 @@
 
 namespace conelane::path_pair {
 
-NodeAscent::NodeAscent(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options)
-    : graph_(graph), incumbent_(incumbent), options_(options), frontiers_(graph, incumbent, options) {}
+void MultiplierStages::round(Multipliers& multipliers) {
+    for (double& multiplier : multipliers.cone) multiplier = unit_ * std::ceil(multiplier / unit_);
+    for (double& multiplier : multipliers.clique) multiplier = unit_ * std::ceil(multiplier / unit_);
+    multipliers.heading = unit_ * std::floor(multipliers.heading / unit_);
+    evaluated_ = multipliers;
+}
 
-void NodeAscent::bind(const LegSystem& system, const Shared& shared) {
-    cliques_ = &shared.cliques;
-    decisions_ = &shared.decisions;
-    tolerance_ = shared.tolerance;
-    clock_ = &shared.clock;
-    stages_ = shared.stages;
-    relaxation_.bind(graph_, system, shared.cliques, shared.decisions, shared.clock);
-    completion_.bind(graph_, relaxation_, incumbent_, shared.second_leg, shared.clock);
-    frontiers_.bind(relaxation_, shared.tolerance, shared.clock);
+NodeAscent::NodeAscent(const Context& context)
+    : graph_(context.graph),
+      incumbent_(context.incumbent),
+      options_(context.options),
+      cliques_(context.cliques),
+      decisions_(context.decisions),
+      clock_(context.clock),
+      relaxation_(graph_, context.system, cliques_, decisions_, clock_),
+      completion_(graph_, relaxation_, incumbent_, context.second_leg, clock_),
+      frontiers_(graph_, relaxation_, incumbent_, options_, clock_) {}
+
+void NodeAscent::restart(MultiplierStages* stages) {
+    stages_ = stages;
+    relaxation_.forget();
     usage_.reset(graph_);
 }
 
@@ -35,23 +44,23 @@ void NodeAscent::begin(const Node& node, const Rules& rules) {
     take_best_multipliers(node);
     // Only a required cone's multiplier may be negative.
     for (std::size_t v = 0; v < multipliers_.cone.size(); ++v) {
-        if (decisions_->visited()[v] == 0) multipliers_.cone[v] = std::max(0.0, multipliers_.cone[v]);
+        if (decisions_.visited()[v] == 0) multipliers_.cone[v] = std::max(0.0, multipliers_.cone[v]);
     }
     ascent_.restart(multipliers_);
 }
 
 Verdict NodeAscent::step(Node& node, const Aim& aim) {
-    if (clock_->out_of_time()) return Verdict::stopped;
+    if (clock_.out_of_time()) return Verdict::stopped;
     state_.value = evaluate(node.graph);
     if (state_.value == -kUnreachable) return Verdict::stopped;
     note_value(node);
     node.bound = std::max(node.bound, state_.value);
-    if (state_.value >= cutoff()) return Verdict::closed;
+    if (state_.value >= incumbent_.limit()) return Verdict::closed;
     relaxation_.evaluate_backward(node.graph);
-    if (clock_->struck()) return Verdict::stopped;
-    usage_.count(graph_, *cliques_, node.graph, relaxation_, tuning().use_memory);
+    if (clock_.expired()) return Verdict::stopped;
+    usage_.count(graph_, cliques_, node.graph, relaxation_, tuning().use_memory);
     if (options_.complete_walks && state_.step == state_.next_completion) complete_walks(node.graph);
-    if (state_.value >= cutoff()) return Verdict::closed;
+    if (state_.value >= incumbent_.limit()) return Verdict::closed;
     state_.is_last = state_.step + 1 >= node.max_steps || state_.scale < rules_.patience.min_scale;
     if (state_.is_last) {
         take_best_multipliers(node);
@@ -82,7 +91,7 @@ double NodeAscent::evaluate(const ResidualGraph& graph) {
 
 void NodeAscent::take_best_multipliers(const Node& node) {
     multipliers_ = node.multipliers;
-    multipliers_.clique.resize(to_index(cliques_->size()), 0.0);
+    multipliers_.clique.resize(to_index(cliques_.size()), 0.0);
 }
 
 void NodeAscent::note_value(Node& node) {
@@ -100,10 +109,10 @@ void NodeAscent::note_value(Node& node) {
 
 void NodeAscent::complete_walks(const ResidualGraph& graph) {
     const double before = incumbent_.cutoff();
-    const std::array<std::vector<int>, 2>& walks = relaxation_.walks(graph);
+    const std::array<std::vector<int>, 2>& walks = relaxation_.walks();
     for (int leg = 0; leg < 2; ++leg) {
         completion_.complete(
-            graph, relaxation_.symmetric() ? 0 : leg, walks[to_index(leg)], tolerance_,
+            graph, relaxation_.symmetric() ? 0 : leg, walks[to_index(leg)],
             incumbent_.found() ? tuning().completion_tries : tuning().first_completion_tries);
     }
     const int wait = !incumbent_.found() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + state_.step / 2;
@@ -112,7 +121,7 @@ void NodeAscent::complete_walks(const ResidualGraph& graph) {
 
 Verdict NodeAscent::try_frontiers(const ResidualGraph& graph) {
     const FrontierTuning& tuning = options_.tuning.frontiers;
-    const double gap = cutoff() - state_.value;
+    const double gap = incumbent_.limit() - state_.value;
     Verdict verdict = Verdict::open;
     if (state_.is_last) {
         verdict = frontiers_.search_by_target(graph, rules_.last_search, state_.best);
@@ -132,14 +141,14 @@ Verdict NodeAscent::try_frontiers(const ResidualGraph& graph) {
         ++state_.beams;
         frontiers_.run_beam(graph, tuning.beam_width);
     }
-    state_.failed_gap = cutoff() - state_.value;
+    state_.failed_gap = incumbent_.limit() - state_.value;
     state_.updates = 0;
     return Verdict::open;
 }
 
 void NodeAscent::move_multipliers(const Node& node, const Aim& aim) {
     if (state_.since_best < rules_.patience.steps) {
-        ascent_.step(multipliers_, usage_.last(), decisions_->visited(), step_gap(aim), state_.scale);
+        ascent_.step(multipliers_, usage_.last(), decisions_.visited(), step_gap(aim), state_.scale);
         return;
     }
     // The steps were too long: shorter ones, from the best multipliers.
@@ -158,18 +167,18 @@ double NodeAscent::step_gap(const Aim& aim) const {
 }
 
 bool NodeAscent::fix(ResidualGraph& graph) {
-    if (!fixing_.drop(relaxation_, cutoff() + relaxation_.offset(), graph)) return false;
+    if (!fixing_.drop(relaxation_, incumbent_.limit() + relaxation_.offset(), graph)) return false;
     if (stages_ != nullptr) stages_->keep();
     return true;
 }
 
 void NodeAscent::separate(const ResidualGraph& graph) {
-    if (cliques_->size() >= tuning().max_cliques) return;
+    if (cliques_.size() >= tuning().max_cliques) return;
     edge_alive_.assign(to_index(graph_.edge_count()), 0);
     for (int a = 0; a < graph.size(); ++a) edge_alive_[to_index(graph.edge(a))] = 1;
-    separation_.separate(graph_, usage_.edges(), edge_alive_, tuning().cliques_per_separation, *cliques_,
-                         *clock_);
-    multipliers_.clique.resize(to_index(cliques_->size()), 0.0);
+    separation_.separate(graph_, usage_.edges(), edge_alive_, tuning().cliques_per_separation, cliques_,
+                         clock_);
+    multipliers_.clique.resize(to_index(cliques_.size()), 0.0);
 }
 
 }  // namespace conelane::path_pair

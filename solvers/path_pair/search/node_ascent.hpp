@@ -1,40 +1,58 @@
 #pragma once
 
-#include "solvers/path_pair/bound/arc_fixing.hpp"
-#include "solvers/path_pair/bound/clique_separation.hpp"
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/bound/walk_usage.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/path_pair_options.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "solvers/path_pair/search/frontier_solve.hpp"
-#include "solvers/path_pair/search/multiplier_stages.hpp"
 #include "solvers/path_pair/search/node.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace conelane::path_pair {
+
+/// The multipliers of an ascent that a certificate repeats: multiples of a unit, and only those that dropped
+/// something, in order.
+class MultiplierStages {
+  public:
+    explicit MultiplierStages(double unit) : unit_(unit) {}
+
+    /// Rounds the multipliers that are evaluated next. No arc gets cheaper, so no cycle gains.
+    void round(Multipliers& multipliers);
+    /// The multipliers rounded last dropped something.
+    void keep() { stages_.push_back(evaluated_); }
+    void add(const Multipliers& multipliers) { stages_.push_back(multipliers); }
+    [[nodiscard]] std::vector<Multipliers> take() { return std::exchange(stages_, {}); }
+
+  private:
+    double unit_;
+    Multipliers evaluated_;
+    std::vector<Multipliers> stages_;
+};
 
 /// Raises the bound of a node step by step. On the way it completes the bound's walks to incumbents, drops
 /// what reaches the incumbent, adds cliques, and searches the frontiers where they are few enough.
 class NodeAscent {
   public:
-    /// What all nodes of a search share.
-    struct Shared {
+    /// What its parts work with, from their making on.
+    struct Context {
+        const ArcGraph& graph;
+        const LegSystem& system;
+        Incumbent& incumbent;
+        const PathPairOptions& options;
         CliquePool& cliques;
         const Decisions& decisions;  ///< of the node at hand
         SecondLegBound& second_leg;
-        double tolerance;
         SearchClock& clock;
-        MultiplierStages* stages = nullptr;  ///< that a certificate wants
     };
-    /// In which kinds of nodes differ.
+    /// The rules of an ascent: kinds of nodes differ in them.
     struct Rules {
         AscentPatience patience;
         FrontierSolve::TargetLimits last_search;  ///< of frontiers, at the ascent's end
@@ -42,15 +60,16 @@ class NodeAscent {
         int first_try = 1;           ///< the step that searches frontiers first; 0: after a beam
         std::size_t beam_steps = 0;  ///< of FrontierTuning::beam_steps, so many
     };
-    /// What the steps aim at: the incumbent, but if that is as it was known, the cost of the one that was
-    /// found by other means than windows.
+    /// The steps aim at the cost of the incumbent. If windows have found it, they aim at `outside_cost`, that
+    /// of the best one found otherwise.
     struct Aim {
-        double known_cost = kUnreachable;
+        double known_cost = kUnreachable;  ///< of the incumbent when windows were last searched
         double outside_cost = kUnreachable;
     };
 
-    NodeAscent(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
-    void bind(const LegSystem& system, const Shared& shared);
+    explicit NodeAscent(const Context& context);
+    /// Forgets the nodes of earlier searches. `stages`: those that a certificate wants.
+    void restart(MultiplierStages* stages = nullptr);
 
     void begin(const Node& node, const Rules& rules);
     /// Precondition: not done.
@@ -93,16 +112,14 @@ class NodeAscent {
     /// Whether anything was dropped.
     bool fix(ResidualGraph& graph);
     void separate(const ResidualGraph& graph);
-    [[nodiscard]] double cutoff() const { return incumbent_.cutoff() - tolerance_; }
     [[nodiscard]] const AscentTuning& tuning() const { return options_.tuning.ascent; }
 
     const ArcGraph& graph_;
     Incumbent& incumbent_;
     const PathPairOptions& options_;
-    CliquePool* cliques_ = nullptr;
-    const Decisions* decisions_ = nullptr;
-    double tolerance_ = 0.0;
-    SearchClock* clock_ = nullptr;
+    CliquePool& cliques_;
+    const Decisions& decisions_;
+    SearchClock& clock_;
     MultiplierStages* stages_ = nullptr;
     PairRelaxation relaxation_;
     PairCompletion completion_;

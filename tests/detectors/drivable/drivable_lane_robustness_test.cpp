@@ -135,7 +135,9 @@ TEST(DrivableLane, AnyLaneGivesFiniteNumbers) {
             for (int i = count(random); i > 0; --i) {
                 const bool on_grid = trial % 3 == 0;  // collinear and coincident cones
                 const Point place(anywhere(random), anywhere(random));
-                course.add(on_grid ? Point((place / 5.0).array().round() * 5.0) : place, on_left);
+                course.add(
+                    on_grid ? 5.0 * Point(std::round(place.x() / 5.0), std::round(place.y() / 5.0)) : place,
+                    on_left);
             }
         }
         course.lane.closed = trial % 2 == 0 && course.lane.left.size() > 4 && course.lane.right.size() > 4;

@@ -5,8 +5,6 @@
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/testing.hpp"
 
-#include <Eigen/Geometry>
-
 namespace conelane::tests {
 namespace {
 
@@ -144,16 +142,20 @@ TEST(DrivableLane, MovesWithItsConesAndTheCar) {
     const DrivableLane lane = course.driven();
     for (const double angle : {0.4, 2.0, -3.0}) {
         const Point shift(8e5, -7e5);
-        const Eigen::Rotation2Dd rotation(angle);
+        const Pose turned{.yaw_rad = angle};
+        const auto rotated = [&](const Point& place) {
+            return place.x() * turned.heading() +
+                   place.y() * Point(-turned.heading().y(), turned.heading().x());
+        };
         Course moved = course;
-        for (Cone& cone : moved.scene.cones) cone.position = rotation * cone.position + shift;
+        for (Cone& cone : moved.scene.cones) cone.position = rotated(cone.position) + shift;
         moved.scene.pose = {shift, angle};
         const DrivableLane other = moved.driven();
         ASSERT_EQ(other.points.size(), lane.points.size());
         for (std::size_t i = 0; i < lane.points.size(); ++i) {
             const DrivablePoint& a = lane.points[i];
             const DrivablePoint& b = other.points[i];
-            EXPECT_LT((rotation * a.position + shift - b.position).norm(), 1e-6);
+            EXPECT_LT((rotated(a.position) + shift - b.position).norm(), 1e-6);
             EXPECT_NEAR(std::remainder(a.heading_rad + angle - b.heading_rad, 2.0 * kPi), 0.0, 1e-6);
             EXPECT_NEAR(a.curvature_1pm, b.curvature_1pm, 1e-6);
             EXPECT_NEAR(a.width_left_m, b.width_left_m, 1e-6);

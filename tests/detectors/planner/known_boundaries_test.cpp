@@ -2,16 +2,7 @@
 
 #include "detectors/planner/known_course.hpp"
 #include "tests/detectors/planner/known_event.hpp"
-
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -23,15 +14,15 @@ TEST(KnownCourse, ConesOfTheRulesStandOnTheBoundaries) {
     const KnownCourse skidpad = known_course(Mission::skidpad);
     for (const Point& cone : known_event::skidpad_cones()) {
         const auto contact = skidpad.boundary_at(cone, 0.0, 0.5);
-        ASSERT_TRUE(contact) << cone.transpose();
-        EXPECT_NEAR(contact->off_m, 0.0, 1e-9) << cone.transpose();
+        ASSERT_TRUE(contact) << testing::PrintToString(cone);
+        EXPECT_NEAR(contact->off_m, 0.0, 1e-9) << testing::PrintToString(cone);
     }
     const KnownCourse acceleration = known_course(Mission::acceleration);
     for (const double half_m : {1.5, 1.9, 2.5}) {
         for (const Point& cone : known_event::acceleration_cones(half_m)) {
             const auto contact = acceleration.boundary_at(cone, half_m - 1.5, 0.5);
-            ASSERT_TRUE(contact) << cone.transpose();
-            EXPECT_NEAR(contact->off_m, 0.0, 1e-9) << cone.transpose();
+            ASSERT_TRUE(contact) << testing::PrintToString(cone);
+            EXPECT_NEAR(contact->off_m, 0.0, 1e-9) << testing::PrintToString(cone);
         }
     }
 }

@@ -1,21 +1,9 @@
 // Acceleration and skidpad through the planner: its plans from the start to the stop, and in frames whose
 // cones say nothing.
 
-#include "detectors/planner/known_course_planner.hpp"
-
-#include "conelane/invalid_input.hpp"
+#include "detectors/planner/planners.hpp"
 #include "tests/detectors/planner/known_event.hpp"
-
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -231,26 +219,6 @@ TEST(KnownCoursePlanner, ACarThatStandsStillMakesNoProgress) {
     }
 }
 
-TEST(KnownCoursePlanner, FramesTwiceAndOutOfOrderChangeNothing) {
-    const auto planner = planner_of(Mission::skidpad);
-    const auto reference = planner_of(Mission::skidpad);
-    Car car(Mission::skidpad, 5);
-    std::vector<Frame> frames;
-    for (int i = 0; i < 60; ++i) frames.push_back(car.next());
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        const Plan plan = planner->update(frames[i], kNoLimit);
-        const Plan wanted = reference->update(frames[i], kNoLimit);
-        ASSERT_EQ(plan.lane.points.size(), wanted.lane.points.size());
-        ASSERT_EQ(plan.state, wanted.state);
-        const Plan again = planner->update(frames[i], kNoLimit);
-        EXPECT_EQ(again.state, plan.state);
-        EXPECT_EQ(again.lane.points.size(), plan.lane.points.size());
-        if (i > 20) {
-            EXPECT_EQ(planner->update(frames[i - 2], kNoLimit).state, PlanState::bridging);
-        }
-    }
-}
-
 TEST(KnownCoursePlanner, KeepsTheTimeLimitOfASearch) {
     // Without time, nothing is found; the first frame with time is enough.
     const auto planner = planner_of(Mission::skidpad);
@@ -264,35 +232,6 @@ TEST(KnownCoursePlanner, KeepsTheTimeLimitOfASearch) {
     const Plan plan = planner->update(sight.look(skidpad_route(-16.0), kCourse, 1.0), kNoLimit);
     EXPECT_EQ(plan.state, PlanState::following);
     EXPECT_GT(plan.lane.length_m, 20.0);
-}
-
-TEST(KnownCoursePlanner, ResetForgetsTheRun) {
-    for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
-        const auto used = planner_of(mission);
-        Car first(mission, 7);
-        for (int i = 0; i < 200; ++i) static_cast<void>(used->update(first.next(), kNoLimit));
-        used->reset();
-        const auto fresh = planner_of(mission);
-        Car second(mission, 8);
-        for (int i = 0; i < 60; ++i) {
-            const Frame frame = second.next({{-5.0, 3.0}, -1.0});
-            const Plan a = used->update(frame, kNoLimit);
-            const Plan b = fresh->update(frame, kNoLimit);
-            ASSERT_EQ(a.state, b.state);
-            ASSERT_EQ(a.lane.points.size(), b.lane.points.size());
-            for (std::size_t k = 0; k < a.lane.points.size(); ++k) {
-                ASSERT_EQ(a.lane.points[k].position, b.lane.points[k].position);
-            }
-        }
-    }
-}
-
-TEST(KnownCoursePlanner, RefusesLapsAndInvalidOptions) {
-    EXPECT_THROW(static_cast<void>(make_known_course_planner({.mission = Mission::skidpad, .laps = 4})),
-                 InvalidInput);
-    EXPECT_THROW(
-        static_cast<void>(make_known_course_planner({.mission = Mission::skidpad, .max_age_s = -1.0})),
-        InvalidInput);
 }
 
 }  // namespace

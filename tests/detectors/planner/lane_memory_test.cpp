@@ -3,14 +3,9 @@
 
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
-#include "detectors/planner/path_memory.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/straight_line.hpp"
-
-#include <cmath>
-#include <numbers>
-
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -137,9 +132,6 @@ TEST_F(RememberedPath, IsNoneWhereItIsOldOrTheCarIsOffItOrAtItsEnd) {
     path_.remember(straight_line({0.0, 0.0}, 0.0, 4.0), 2.0);
     EXPECT_FALSE(path_.left({{3.0, 0.0}, 0.0}, 2.1).points.empty());
     EXPECT_TRUE(path_.left({{3.9, 0.0}, 0.0}, 2.2).points.empty()) << "at its end";
-    path_.remember(lane, 3.0);
-    path_.forget();
-    EXPECT_TRUE(path_.left({{1.0, 0.0}, 0.0}, 3.1).points.empty());
 }
 
 TEST_F(RememberedPath, TheOtherLegMayBeNearer) {
@@ -174,18 +166,6 @@ TEST(LaneChoice, OneWrongFrameIsNotDrivenByAndTwoThatAgreeAre) {
     EXPECT_FALSE(choice.take(other, lane));
     EXPECT_FALSE(choice.take(third, lane)) << "they do not agree";
     EXPECT_TRUE(choice.take(lane, lane));
-}
-
-TEST(LaneChoice, AWrongLaneIsLeftAfterAsManyFramesAsSpokeForItAndNoMore) {
-    const LaneChoiceSettings settings;
-    LaneChoice choice(settings);
-    const DrivableLane wrong = straight_line({0.0, 0.0}, 0.0, 20.0);
-    const DrivableLane right = straight_line({0.0, 0.0}, 0.6, 20.0);
-    for (int i = 0; i < 50; ++i) EXPECT_TRUE(choice.take(wrong, i == 0 ? DrivableLane{} : wrong));
-    int frames = 1;
-    while (!choice.take(right, wrong)) ASSERT_LE(++frames, static_cast<int>(settings.max_support));
-    EXPECT_GT(frames, 1);
-    EXPECT_TRUE(choice.take(right, right));
 }
 
 TEST(LaneChoice, ALaneNearItsEndDoesNotResist) {

@@ -4,33 +4,16 @@
 #include "conelane/planner.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
-#include "detectors/planner/lap_planner.hpp"
+#include "detectors/planner/planners.hpp"
 #include "tests/support/planner_frames.hpp"
-
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include "tests/support/straight_line.hpp"
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
 
 DrivableLane line(double heading_rad) {
-    DrivableLane lane;
-    for (int i = 0; i <= 40; ++i) {
-        DrivablePoint point;
-        point.s_m = 0.5 * i;
-        point.position = point.s_m * Point(std::cos(heading_rad), std::sin(heading_rad));
-        point.heading_rad = heading_rad;
-        lane.points.push_back(point);
-    }
-    lane.length_m = 20.0;
-    return lane;
+    return tests::straight_line({0.0, 0.0}, heading_rad, 20.0);
 }
 
 /// A choice whose lane is supported by many certain frames.
@@ -118,21 +101,17 @@ TEST(LaneChoice, AStretchHasNoSupportFromFramesThatDidNotSeeIt) {
     EXPECT_EQ(frames_until_right(0.8), 2) << "two surer frames outweigh it";
 }
 
-DrivableLane line_aside(double left_m, double width_m) {
-    DrivableLane lane = line(0.0);
-    for (DrivablePoint& point : lane.points) {
-        point.position.y() += left_m;
-        point.width_left_m = width_m / 2.0;
-        point.width_right_m = width_m / 2.0;
-    }
+DrivableLane line_aside(double left_m, double width_m = 3.5) {
+    DrivableLane lane = tests::straight_line({0.0, left_m}, 0.0, 20.0);
+    for (DrivablePoint& point : lane.points) point.width_left_m = point.width_right_m = width_m / 2.0;
     lane.trusted_m = 15.0;
     return lane;
 }
 
 TEST(LaneChoice, OnTheCourseOfTheLapBeforeAJumpFromTheLaneDrivenByHasToBeConfirmed) {
-    const DrivableLane course = line_aside(0.0, 3.5);
-    const DrivableLane left = line_aside(0.6, 3.5);
-    const DrivableLane fresh = line_aside(-0.7, 3.5);
+    const DrivableLane course = line_aside(0.0);
+    const DrivableLane left = line_aside(0.6);
+    const DrivableLane fresh = line_aside(-0.7);
     LaneChoice choice{LaneChoiceSettings{}};
     EXPECT_TRUE(choice.take(left, DrivableLane{}, 0.9));
     ASSERT_TRUE(choice.agrees(left, course));
@@ -146,9 +125,9 @@ TEST(LaneChoice, OnTheCourseOfTheLapBeforeAJumpFromTheLaneDrivenByHasToBeConfirm
 }
 
 TEST(LaneChoice, OffTheCourseOfTheLapBeforeTheCourseIsTheReference) {
-    const DrivableLane course = line_aside(0.0, 3.5);
-    const DrivableLane off = line_aside(2.0, 3.5);
-    const DrivableLane on = line_aside(-0.5, 3.5);
+    const DrivableLane course = line_aside(0.0);
+    const DrivableLane off = line_aside(2.0);
+    const DrivableLane on = line_aside(-0.5);
     const LaneChoice choice{LaneChoiceSettings{}};
     EXPECT_EQ(&choice.reference(on, off, course), &course) << "a lane that comes back is taken at once";
     EXPECT_EQ(&choice.reference(off, on, course), &course);
@@ -157,16 +136,16 @@ TEST(LaneChoice, OffTheCourseOfTheLapBeforeTheCourseIsTheReference) {
 
 TEST(LaneChoice, ACarIsOnTheCourseOfTheLapBeforeWhereItIsNotAside) {
     const LaneChoice choice{LaneChoiceSettings{}};
-    const DrivableLane course = line_aside(0.0, 3.5);
-    EXPECT_TRUE(choice.is_on(course, line_aside(0.4, 3.5)));
-    EXPECT_FALSE(choice.is_on(course, line_aside(0.9, 3.5)));
+    const DrivableLane course = line_aside(0.0);
+    EXPECT_TRUE(choice.is_on(course, line_aside(0.4)));
+    EXPECT_FALSE(choice.is_on(course, line_aside(0.9)));
     EXPECT_TRUE(choice.is_on(course, bent(3.0, 1.0))) << "the lane driven by leaves it ahead of the car";
-    EXPECT_FALSE(choice.is_on(DrivableLane{}, line_aside(0.0, 3.5))) << "there is no course";
+    EXPECT_FALSE(choice.is_on(DrivableLane{}, line_aside(0.0))) << "there is no course";
     EXPECT_FALSE(choice.is_on(course, DrivableLane{})) << "where the car is, nobody knows";
 }
 
 TEST(Steadied, NearTheCarNoiseMovesTheLineHalfAsMuchAndTheWidthsSaySo) {
-    const DrivableLane lane = steadied(line_aside(0.4, 3.5), line_aside(0.0, 3.5), 0.5);
+    const DrivableLane lane = steadied(line_aside(0.4), line_aside(0.0), 0.5);
     for (const DrivablePoint& point : lane.points) {
         EXPECT_NEAR(point.width_left_m - point.width_right_m, 2.0 * (0.4 - point.position.y()), 1e-6);
         if (point.s_m > 0.6 && point.s_m < 7.5) {
@@ -182,10 +161,10 @@ TEST(Steadied, NearTheCarNoiseMovesTheLineHalfAsMuchAndTheWidthsSaySo) {
 }
 
 TEST(Steadied, ALaneThatIsElsewhereStays) {
-    for (const DrivablePoint& point : steadied(line_aside(1.0, 3.5), line_aside(0.0, 3.5), 0.5).points) {
+    for (const DrivablePoint& point : steadied(line_aside(1.0), line_aside(0.0), 0.5).points) {
         EXPECT_NEAR(point.position.y(), 1.0, 1e-9);
     }
-    EXPECT_EQ(steadied(line_aside(1.0, 3.5), {}, 0.5).points.size(), line(0.0).points.size());
+    EXPECT_EQ(steadied(line_aside(1.0), {}, 0.5).points.size(), line(0.0).points.size());
 }
 
 TEST(Steadied, TheLineComesNoNearerToABoundary) {

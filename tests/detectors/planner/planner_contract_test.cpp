@@ -3,24 +3,11 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
+#include "tests/support/detector_names.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/plan_checks.hpp"
 #include "tests/support/planner_frames.hpp"
-
-#include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <memory>
-#include <random>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -287,24 +274,14 @@ TEST_P(PlannerContract, ACarThatIsSetElsewhereHasNoStalePath) {
     }
 }
 
-std::vector<std::string> detector_names() {
-    std::vector<std::string> names;
-    for (const DetectorInfo& detector : detectors()) names.emplace_back(detector.name);
-    return names;
-}
-
-std::string name_of(const testing::TestParamInfo<std::tuple<Mission, std::string>>& info) {
-    std::string name = std::string(to_string(std::get<0>(info.param))) + "_" + std::get<1>(info.param);
-    std::ranges::replace_if(
-        name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-    return name;
-}
-
 INSTANTIATE_TEST_SUITE_P(All, PlannerContract,
                          testing::Combine(testing::Values(Mission::trackdrive, Mission::autocross,
                                                           Mission::acceleration, Mission::skidpad),
-                                          testing::ValuesIn(detector_names())),
-                         name_of);
+                                          testing::ValuesIn(tests::detector_names())),
+                         [](const auto& test) {
+                             return std::string(to_string(std::get<0>(test.param))) + "_" +
+                                    case_name(std::get<1>(test.param));
+                         });
 
 TEST(PlannerOptions, ThatAreOutOfRangeOrNotUsedAreRefused) {
     const auto refused = [](const PlannerOptions& options) -> std::string {

@@ -9,21 +9,9 @@
 #include "tests/support/plan_checks.hpp"
 #include "tests/support/planner_frames.hpp"
 #include "tests/support/recorded_tracks.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <memory>
-#include <optional>
 #include <random>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -83,6 +71,13 @@ double course_error_m(const DrivableLane& line, const DrivenCourse& course) {
     return farthest_m;
 }
 
+/// Expects a stop at most so far behind the line: a stop before it loses the run.
+void expect_stop_behind_line(const Told& told, const DrivenCourse& course, double within_m) {
+    ASSERT_TRUE(told.stop_m);
+    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
+    EXPECT_LT(*told.stop_m, course.finish_m + within_m);
+}
+
 TEST(PlannerEvent, LapsAreCountedAtTheLineAndTheLastOneEndsTheRun) {
     const DrivenCourse course = tests::oval(2);
     const auto planner = make_planner({.mission = Mission::trackdrive, .laps = 2});
@@ -93,9 +88,7 @@ TEST(PlannerEvent, LapsAreCountedAtTheLineAndTheLastOneEndsTheRun) {
     ASSERT_EQ(told.laps_m.size(), 2U);
     EXPECT_NEAR(told.laps_m[0], course.lap_m, 1.5);
     EXPECT_NEAR(told.laps_m[1], 2.0 * course.lap_m, 1.5);
-    ASSERT_TRUE(told.stop_m);
-    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9) << "a stop before the line loses the run";
-    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
+    expect_stop_behind_line(told, course, 5.0);
     EXPECT_EQ(told.last.state, PlanState::finished);
     EXPECT_EQ(told.last.lap, 2);
     // The rest of the path ends within 30 m behind the line.
@@ -121,14 +114,16 @@ TEST(PlannerEvent, TheCourseIsClosedAfterALapAndIsTheMiddleOfTheLane) {
     }
 }
 
-TEST(PlannerEvent, AnAutocrossEndsAfterOneLap) {
+/// Also 8 m before the gate of orange cones: then the start counts when the car crosses it.
+TEST(PlannerEvent, AnAutocrossEndsAfterOneLapWhereverTheRunBegins) {
     const DrivenCourse course = tests::oval(1);
-    const auto planner = make_planner({.mission = Mission::autocross});
-    const Told told = drive(*planner, course, course.finish_m + 4.0);
-    ASSERT_TRUE(told.stop_m);
-    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
-    EXPECT_LT(*told.stop_m, course.finish_m + 4.0);
-    EXPECT_EQ(told.last.lap, 1);
+    for (const bool is_before_gate : {false, true}) {
+        const auto planner = make_planner({.mission = Mission::autocross});
+        const Told told = drive(*planner, course, course.finish_m + 5.0, {.with_color = is_before_gate},
+                                is_before_gate ? -8.0 : 0.0);
+        expect_stop_behind_line(told, course, 4.0);
+        EXPECT_EQ(told.last.lap, 1);
+    }
 }
 
 TEST(PlannerEvent, AnAutocrossEndsAtAFinishElsewhere) {
@@ -163,9 +158,7 @@ TEST(PlannerEvent, AGateThatIsPassedOnACircuitEndsNothing) {
     ASSERT_GE(std::ranges::count(course.cones, ConeColor::orange, &Cone::color), 2);
     const auto planner = make_planner({.mission = Mission::autocross});
     const Told told = drive(*planner, course, course.finish_m + 4.0, {.with_color = true});
-    ASSERT_TRUE(told.stop_m);
-    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
-    EXPECT_LT(*told.stop_m, course.finish_m + 4.0);
+    expect_stop_behind_line(told, course, 4.0);
 }
 
 TEST(PlannerEvent, NoiseWithoutIdsLeavesTheLapsAsTheyAre) {
@@ -178,46 +171,6 @@ TEST(PlannerEvent, NoiseWithoutIdsLeavesTheLapsAsTheyAre) {
     EXPECT_LT(told.farthest_m, 0.8);
     ASSERT_TRUE(planner->course());
     EXPECT_LT(course_error_m(*planner->course(), course), 0.35);
-}
-
-TEST(PlannerEvent, ALapIsAsLongAsItIsWhereverTheRunBegins) {
-    const DrivenCourse course = tests::oval(1);
-    // 8 m before the gate of orange cones: the start counts when the car crosses it.
-    const auto planner = make_planner({.mission = Mission::autocross});
-    const Told told = drive(*planner, course, course.finish_m + 5.0, {.with_color = true}, -8.0);
-    ASSERT_TRUE(told.stop_m);
-    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
-    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
-}
-
-TEST(PlannerEvent, AccelerationIsStraightAndStopsBehindTheFinish) {
-    const DrivenCourse course = tests::course_of(Mission::acceleration);
-    const auto planner = make_planner({.mission = Mission::acceleration});
-    const Told told = drive(*planner, course, course.finish_m + 60.0);
-    EXPECT_LE(told.without_path, 2);
-    EXPECT_LT(told.farthest_m, 0.4);
-    ASSERT_TRUE(told.stop_m);
-    EXPECT_GE(*told.stop_m, course.finish_m);
-    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
-    EXPECT_EQ(told.last.state, PlanState::finished);
-    EXPECT_GT(told.last.lane.length_m, 10.0);
-    EXPECT_LE(told.last.lane.length_m, 40.0 + 2.0) << "100 m behind the finish it is at rest";
-    EXPECT_FALSE(planner->course());
-}
-
-TEST(PlannerEvent, SkidpadIsDrivenInItsPhases) {
-    const DrivenCourse course = tests::course_of(Mission::skidpad);
-    const auto planner = make_planner({.mission = Mission::skidpad});
-    const Told told = drive(*planner, course, course.finish_m + 12.0);
-    EXPECT_LE(told.without_path, 3);
-    EXPECT_LT(told.farthest_m, 0.4);
-    EXPECT_EQ(told.phases, std::vector<std::string_view>(tests::kPhases.begin(), tests::kPhases.end()));
-    EXPECT_EQ(told.laps_m.size(), 4U);
-    ASSERT_TRUE(told.stop_m);
-    EXPECT_GE(*told.stop_m, course.finish_m);
-    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
-    EXPECT_LE(told.last.lane.length_m, 13.0 + 2.0) << "25 m behind the line it is at rest";
-    EXPECT_FALSE(planner->course());
 }
 
 TEST(PlannerEvent, AtRestAtTheEndNothingIsLeftToDrive) {

@@ -2,11 +2,9 @@
 
 #include "detectors/planner/rigid_shift.hpp"
 
-#include <cmath>
-#include <random>
-#include <vector>
+#include "tests/support/testing.hpp"
 
-#include <gtest/gtest.h>
+#include <random>
 
 namespace conelane {
 namespace {
@@ -23,11 +21,10 @@ TEST(RigidShift, TurnsAboutItsPlaceAndThenMoves) {
     const RigidShift shift{{1.0, 0.0}, std::acos(-1.0) / 2.0, {0.0, 5.0}};
     EXPECT_LT((shift({1.0, 0.0}) - Point(1.0, 5.0)).norm(), 1e-12);
     EXPECT_LT((shift({3.0, 0.0}) - Point(1.0, 7.0)).norm(), 1e-12);
-    DrivableLane lane;
-    lane.points.push_back({.position = {3.0, 0.0}, .heading_rad = 0.0});
-    move(lane, shift);
-    EXPECT_LT((lane.points[0].position - Point(1.0, 7.0)).norm(), 1e-12);
-    EXPECT_NEAR(lane.points[0].heading_rad, std::acos(-1.0) / 2.0, 1e-12);
+    std::vector<DrivablePoint> points{{.position = {3.0, 0.0}, .heading_rad = 0.0}};
+    move(points, shift);
+    EXPECT_LT((points[0].position - Point(1.0, 7.0)).norm(), 1e-12);
+    EXPECT_NEAR(points[0].heading_rad, std::acos(-1.0) / 2.0, 1e-12);
 }
 
 TEST(CommonShift, IsFoundAmongPairsWithATurnAndAnOutlier) {

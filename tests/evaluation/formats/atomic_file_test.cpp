@@ -1,7 +1,6 @@
 #include "evaluation/formats/atomic_file.hpp"
 
 #include "tests/support/file_test.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -99,89 +99,83 @@ SolutionFile read(const std::string& text) {
     return read_solution_file(in, small_program());
 }
 
+struct Written {
+    std::string text;
+    SolutionFile::Status status;
+    std::optional<double> objective;
+    std::vector<double> point;  ///< empty: there is none
+};
+
+void expect_read(const std::vector<Written>& all) {
+    for (const Written& written : all) {
+        SCOPED_TRACE(written.text);
+        const SolutionFile solution = read(written.text);
+        EXPECT_EQ(solution.status, written.status);
+        EXPECT_EQ(solution.objective, written.objective);
+        EXPECT_EQ(solution.point, written.point);
+    }
+}
+
+using Status = SolutionFile::Status;
+const std::vector<double> kBest{0.0, 1.0, 0.5};
+const std::vector<double> kHalf{0.0, 1.0, 0.0};
+const std::vector<double> kZero(3, 0.0);
+
 TEST(SolutionFiles, ByCbc) {
-    const SolutionFile solution =
-        read("Optimal - objective value -2.00000000\n      1 y_1    1    -2\n**    2 z_1_2    0.5    0\n");
-    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
-    EXPECT_EQ(*solution.objective, -2.0);
-    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
-    EXPECT_EQ(read("Infeasible - objective value 0\n").status, SolutionFile::Status::infeasible);
-    // With `printingOptions all`, rows come first.
-    EXPECT_EQ(read("Optimal - objective value -2\n 0 one_of 1 0\n 1 close_0 0.5 0\n 0 x 0 1\n 1 y_1 1 -2\n"
-                   " 2 z_1_2 0.5 0\n")
-                  .point,
-              solution.point);
-    EXPECT_EQ(read("Optimal (within gap tolerance) - objective value -2\n 1 y_1 1 -2\n").status,
-              SolutionFile::Status::feasible);
+    expect_read({
+        {"Optimal - objective value -2.00000000\n      1 y_1    1    -2\n**    2 z_1_2    0.5    0\n",
+         Status::optimal, -2.0, kBest},
+        {"Infeasible - objective value 0\n", Status::infeasible, {}, {}},
+        // With `printingOptions all`, rows come first.
+        {"Optimal - objective value -2\n 0 one_of 1 0\n 1 close_0 0.5 0\n 0 x 0 1\n 1 y_1 1 -2\n"
+         " 2 z_1_2 0.5 0\n",
+         Status::optimal, -2.0, kBest},
+        {"Optimal (within gap tolerance) - objective value -2\n 1 y_1 1 -2\n", Status::feasible, -2.0, kHalf},
+        // The values below such a first line belong to the relaxation: they are not an incumbent.
+        {"Stopped on time (no integer solution - continuous used) - objective value -2.5\n 0 x 0.5 1\n",
+         Status::unknown,
+         {},
+         {}},
+        {"Stopped on time - objective value -2\n 1 y_1 1 -2\n", Status::feasible, -2.0, kHalf},
+    });
 }
 
-TEST(SolutionFiles, ByGlpsol) {
-    const SolutionFile solution =
-        read("c Problem: small\nc\ns mip 2 3 o -2\ni 1 1\ni 2 0.5\nj 1 0\nj 2 1\nj 3 0.5\ne o f\n");
-    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
-    EXPECT_EQ(*solution.objective, -2.0);
-    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
-    EXPECT_EQ(read("s mip 2 3 n 0\ne o f\n").status, SolutionFile::Status::infeasible);
-}
-
-/// The values below such a first line belong to the relaxation: they are not an incumbent.
-TEST(SolutionFiles, ByCbcWithoutAnIncumbent) {
-    const SolutionFile solution =
-        read("Stopped on time (no integer solution - continuous used) - objective value -2.5\n 0 x 0.5 1\n");
-    EXPECT_EQ(solution.status, SolutionFile::Status::unknown);
-    EXPECT_TRUE(solution.point.empty());
-    EXPECT_EQ(read("Stopped on time - objective value -2\n 1 y_1 1 -2\n").status,
-              SolutionFile::Status::feasible);
-}
-
-TEST(SolutionFiles, ByHighs) {
-    const SolutionFile solution = read(
-        "Model status\nOptimal\n\n# Primal solution values\nFeasible\nObjective -2\n# Columns 3\nx 0\ny_1 1\n"
-        "z_1_2 0.5\n# Rows 2\none_of 1\nclose_0 0.5\n\n# Dual solution values\nNone\n\n# Basis\nHiGHS "
-        "v1\nNone\n");
-    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
-    EXPECT_EQ(*solution.objective, -2.0);
-    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
-    const SolutionFile none =
-        read("Model status\nInfeasible\n\n# Primal solution values\nNone\n\n# Dual solution values\nNone\n");
-    EXPECT_EQ(none.status, SolutionFile::Status::infeasible);
-    EXPECT_TRUE(none.point.empty());
-    const char* const stopped =
-        "Model status\nTime limit reached\n\n# Primal solution values\nFeasible\nObjective 0\n# Columns 3\nx "
-        "0\n";
-    EXPECT_EQ(read(stopped).status, SolutionFile::Status::feasible);
-    EXPECT_EQ(read("Model status\nTime limit reached\n\n# Primal solution values\nNone\n").status,
-              SolutionFile::Status::unknown);
-}
-
-TEST(SolutionFiles, ByScip) {
-    const SolutionFile solution = read(
-        "solution status: optimal solution found\nobjective value:                 -2\n"
-        "y_1                      1 \t(obj:-2)\nz_1_2                  0.5 \t(obj:0)\n");
-    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
-    EXPECT_EQ(*solution.objective, -2.0);
-    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
-    EXPECT_EQ(read("solution status: infeasible\nno solution available\n").status,
-              SolutionFile::Status::infeasible);
-    EXPECT_EQ(read("solution status: time limit reached\nno solution available\n").status,
-              SolutionFile::Status::unknown);
-    EXPECT_EQ(read("solution status: time limit reached\nobjective value: 0\n").status,
-              SolutionFile::Status::feasible);
+TEST(SolutionFiles, ByGlpsolHighsAndScip) {
+    expect_read({
+        {"c Problem: small\nc\ns mip 2 3 o -2\ni 1 1\ni 2 0.5\nj 1 0\nj 2 1\nj 3 0.5\ne o f\n",
+         Status::optimal, -2.0, kBest},
+        {"s mip 2 3 n 0\ne o f\n", Status::infeasible, {}, {}},
+        {"Model status\nOptimal\n\n# Primal solution values\nFeasible\nObjective -2\n# Columns 3\nx 0\ny_1 "
+         "1\n"
+         "z_1_2 0.5\n# Rows 2\none_of 1\nclose_0 0.5\n\n# Dual solution values\nNone\n\n# Basis\nHiGHS "
+         "v1\nNone\n",
+         Status::optimal, -2.0, kBest},
+        {"Model status\nInfeasible\n\n# Primal solution values\nNone\n\n# Dual solution values\nNone\n",
+         Status::infeasible,
+         {},
+         {}},
+        {"Model status\nTime limit reached\n\n# Primal solution values\nFeasible\nObjective 0\n# Columns "
+         "3\nx 0\n",
+         Status::feasible, 0.0, kZero},
+        {"Model status\nTime limit reached\n\n# Primal solution values\nNone\n", Status::unknown, {}, {}},
+        {"solution status: optimal solution found\nobjective value:                 -2\n"
+         "y_1                      1 \t(obj:-2)\nz_1_2                  0.5 \t(obj:0)\n",
+         Status::optimal, -2.0, kBest},
+        {"solution status: infeasible\nno solution available\n", Status::infeasible, {}, {}},
+        {"solution status: time limit reached\nno solution available\n", Status::unknown, {}, {}},
+        {"solution status: time limit reached\nobjective value: 0\n", Status::feasible, 0.0, kZero},
+    });
 }
 
 TEST(SolutionFiles, OfMiplibAndGurobi) {
-    const SolutionFile miplib = read("=obj= -2\ny_1 1\nz_1_2 0.5\n");
-    EXPECT_EQ(miplib.status, SolutionFile::Status::feasible);
-    EXPECT_EQ(*miplib.objective, -2.0);
-    EXPECT_EQ(miplib.point, (std::vector<double>{0.0, 1.0, 0.5}));
-    EXPECT_EQ(read("y_1 1\nz_1_2 0.5\n").point, miplib.point);
-    EXPECT_EQ(read("=infeas=\n").status, SolutionFile::Status::infeasible);
-    EXPECT_EQ(read("=obj= 0\n").point, (std::vector<double>(3, 0.0)));
-    const SolutionFile gurobi =
-        read("# Solution for model small\r\n# Objective value = -2\r\nx 0\r\ny_1 1\r\nz_1_2 0.5\r\n");
-    EXPECT_EQ(gurobi.status, SolutionFile::Status::feasible);
-    EXPECT_EQ(*gurobi.objective, -2.0);
-    EXPECT_EQ(gurobi.point, miplib.point);
+    expect_read({
+        {"=obj= -2\ny_1 1\nz_1_2 0.5\n", Status::feasible, -2.0, kBest},
+        {"y_1 1\nz_1_2 0.5\n", Status::feasible, {}, kBest},
+        {"=infeas=\n", Status::infeasible, {}, {}},
+        {"=obj= 0\n", Status::feasible, 0.0, kZero},
+        {"# Solution for model small\r\n# Objective value = -2\r\nx 0\r\ny_1 1\r\nz_1_2 0.5\r\n",
+         Status::feasible, -2.0, kBest},
+    });
 }
 
 /// Values that a format does not have may be in lines =KEY= of any format, also after its last line.
@@ -203,50 +197,51 @@ TEST(SolutionFiles, RemarksGiveValuesThatAFormatLacks) {
 }
 
 TEST(SolutionFiles, BadOnesNameTheirLine) {
-    const auto complaint = [](const std::string& text) { return refusal([&] { (void)read(text); }); };
-    EXPECT_EQ(complaint(""), "line 1: the file is empty");
-    EXPECT_EQ(complaint("Optimal - objective value 1\n 0 q 1 1\n"), "line 2: the program has no column q");
-    EXPECT_EQ(complaint("Optimal - objective value 1\n 0 x\n"), "line 2: must be INDEX NAME VALUE");
-    EXPECT_EQ(complaint("c\ns mip 2 9 o 1\n"), "line 2: has 9 columns, the program 3");
-    EXPECT_EQ(complaint("s mip 2 3 o 1\nj 4 1\n"),
-              "line 2: must be 'j COLUMN VALUE' after the line of the status");
-    EXPECT_EQ(complaint("s mip 2 3 o 1\nj 1 1\n"), "line 3: the file ends before its line 'e o f'");
-    EXPECT_EQ(complaint("=obj= -2\ny_1 1\ny_1 1\n"), "line 3: column y_1 is there twice");
-    EXPECT_EQ(complaint("=obj= -2\ny_1 1e999\n"), "line 2: must be NAME VALUE");
-    EXPECT_EQ(complaint("=obj= nothing\n"), "line 1: must be =obj= VALUE");
-    EXPECT_EQ(complaint("=bound= 1\nx 1\n=bound= 2\n"), "line 3: =bound= is there twice");
-    EXPECT_EQ(complaint("Optimal - objective value -2\n 1 y_1 1 -2\n=obj= -3\n"),
-              "line 4: =obj= says -3, the head of the solution -2");
-    EXPECT_EQ(complaint("Stopped on time - objective value -2\n 1 y_1 1 -2\n=status= optimal\n"),
-              "line 4: =status= says optimal, the head of the solution does not");
-    EXPECT_EQ(complaint("Optimal - objective value nan\n 1 y_1 1 -2\n"),
-              "line 1: 'objective value' must be followed by a finite number");
-    EXPECT_EQ(complaint("=objective= 3\n"), "line 1: is not a line of a solution: =objective=");
-    EXPECT_EQ(complaint("=status= optimal\n"), "line 2: there is no point with this status");
-    EXPECT_EQ(complaint("=status= good\nx 1\n"),
-              "line 1: =status= must be optimal, feasible, infeasible or unknown");
-    EXPECT_EQ(complaint("Model status\nOptimal\n# Primal solution values\nNone\n"),
-              "line 5: there is no point with status Optimal");
-    EXPECT_EQ(complaint("solution status: optimal\nx 1\n"), "line 2: must be 'objective value: VALUE'");
-    EXPECT_EQ(complaint("<?xml version = \"1.0\"?>\n"),
-              "line 1: is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB .sol");
+    for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
+             {"", "line 1: the file is empty"},
+             {"Optimal - objective value 1\n 0 q 1 1\n", "line 2: the program has no column q"},
+             {"Optimal - objective value 1\n 0 x\n", "line 2: must be INDEX NAME VALUE"},
+             {"c\ns mip 2 9 o 1\n", "line 2: has 9 columns, the program 3"},
+             {"s mip 2 3 o 1\nj 4 1\n", "line 2: must be 'j COLUMN VALUE' after the line of the status"},
+             {"s mip 2 3 o 1\nj 1 1\n", "line 3: the file ends before its line 'e o f'"},
+             {"=obj= -2\ny_1 1\ny_1 1\n", "line 3: column y_1 is there twice"},
+             {"=obj= -2\ny_1 1e999\n", "line 2: must be NAME VALUE"},
+             {"=obj= nothing\n", "line 1: must be =obj= VALUE"},
+             {"=bound= 1\nx 1\n=bound= 2\n", "line 3: =bound= is there twice"},
+             {"Optimal - objective value -2\n 1 y_1 1 -2\n=obj= -3\n",
+              "line 4: =obj= says -3, the head of the solution -2"},
+             {"Stopped on time - objective value -2\n 1 y_1 1 -2\n=status= optimal\n",
+              "line 4: =status= says optimal, the head of the solution does not"},
+             {"Optimal - objective value nan\n 1 y_1 1 -2\n",
+              "line 1: 'objective value' must be followed by a finite number"},
+             {"=objective= 3\n", "line 1: is not a line of a solution: =objective="},
+             {"=status= optimal\n", "line 2: there is no point with this status"},
+             {"=status= good\nx 1\n", "line 1: =status= must be optimal, feasible, infeasible or unknown"},
+             {"Model status\nOptimal\n# Primal solution values\nNone\n",
+              "line 5: there is no point with status Optimal"},
+             {"solution status: optimal\nx 1\n", "line 2: must be 'objective value: VALUE'"},
+             {"<?xml version = \"1.0\"?>\n",
+              "line 1: is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB "
+              ".sol"}})
+        EXPECT_EQ(refusal([&] { (void)read(text); }), words);
 }
 
 TEST(SolutionFiles, FaultsOfAPointNameColumnOrRow) {
-    const auto fault = [](const std::string& text) { return fault_of(read(text), small_program()); };
     const std::string optimum = "=obj= -2\n=status= optimal\ny_1 1\nz_1_2 0.5\n";
-    EXPECT_EQ(fault(optimum), "");
-    EXPECT_EQ(fault(optimum + "=bound= -2\n"), "");
-    EXPECT_EQ(fault("=status= unknown\n=bound= 5\n"), "");
-    EXPECT_EQ(fault("y_1 0.99999\nz_1_2 0.5\n=obj= -1.99998\n"), "") << "solvers round";
-    EXPECT_EQ(fault("y_1 0.6\nz_1_2 0.5\n"), "column y_1 is 0.6, not integral");
-    EXPECT_EQ(fault("y_1 3\n"), "column y_1 is 3, outside 0 to 1");
-    EXPECT_EQ(fault("z_1_2 0.8\n"), "column z_1_2 is 0.8, outside 0 to 0.75");
-    EXPECT_EQ(fault("y_1 1\n"), "row close_0 of the program is 1, outside 0 to 0.5");
-    EXPECT_EQ(fault("z_1_2 0.5\n"), "row close_0 of the program is -0.5, outside 0 to 0.5");
-    EXPECT_EQ(fault("x 1\ny_1 1\nz_1_2 0.5\n"), "row one_of of the program is 2, outside -1e+300 to 1");
-    EXPECT_EQ(fault("=obj= -2.001\ny_1 1\nz_1_2 0.5\n"), "it claims the objective -2.001, its point has -2");
-    EXPECT_EQ(fault(optimum + "=bound= -1.9\n"), "it claims the bound -1.9, its point has the objective -2");
+    for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
+             {optimum, ""},
+             {optimum + "=bound= -2\n", ""},
+             {"=status= unknown\n=bound= 5\n", ""},
+             {"y_1 0.99999\nz_1_2 0.5\n=obj= -1.99998\n", ""},  // solvers round
+             {"y_1 0.6\nz_1_2 0.5\n", "column y_1 is 0.6, not integral"},
+             {"y_1 3\n", "column y_1 is 3, outside 0 to 1"},
+             {"z_1_2 0.8\n", "column z_1_2 is 0.8, outside 0 to 0.75"},
+             {"y_1 1\n", "row close_0 of the program is 1, outside 0 to 0.5"},
+             {"z_1_2 0.5\n", "row close_0 of the program is -0.5, outside 0 to 0.5"},
+             {"x 1\ny_1 1\nz_1_2 0.5\n", "row one_of of the program is 2, outside -1e+300 to 1"},
+             {"=obj= -2.001\ny_1 1\nz_1_2 0.5\n", "it claims the objective -2.001, its point has -2"},
+             {optimum + "=bound= -1.9\n", "it claims the bound -1.9, its point has the objective -2"}})
+        EXPECT_EQ(fault_of(read(text), small_program()), words) << text;
 }
 
 struct RoundTrip {

@@ -4,7 +4,6 @@
 #include "evaluation/formats/solution_file.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -151,7 +150,7 @@ TEST_F(SolutionFileTest, ReadsTheOldNameOfAStop) {
 TEST_F(SolutionFileTest, NamesBadRecords) {
     EXPECT_EQ(error_in(solution("solved", "[]")),
               "s:1: status: must be one of optimal, feasible, infeasible, stopped, error");
-    EXPECT_EQ(error_in(solution("optimal", "[[1, 2], [1]]")), "s:1: edges[1]: must be a pair of cone ids");
+    EXPECT_EQ(error_in(solution("optimal", "[[1, 2], [1]]")), "s:1: edges[1]: must be a pair of numbers");
     EXPECT_EQ(error_in(solution("optimal", "[[1, 2.5]]")), "s:1: edges[0][1]: must be an integer of 64 bits");
     EXPECT_EQ(error_in(solution("infeasible", "[[1, 2]]")),
               "s:1: edges: must be empty if status is infeasible");
@@ -249,9 +248,9 @@ TEST_F(ParameterFileTest, ExtrasAreOptional) {
     text.replace(text.find("\"use_confidence\": 1"), 19, "\"use_confidence\": 2");
     EXPECT_EQ(error_of([&] { static_cast<void>(read_rld_parameters(file_with(text, "p"))); }),
               "p: use_confidence: must be 0 or 1");
-    parameters.d_v = 0.0009;
+    parameters.facing_distance_m = 0.0009;
     EXPECT_THROW(validate(parameters), InvalidInput);
-    parameters.d_v = 0.001;
+    parameters.facing_distance_m = 0.001;
     EXPECT_NO_THROW(validate(parameters));
 }
 

@@ -7,18 +7,8 @@
 #include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <numbers>
-#include <set>
-#include <string>
-#include <vector>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
@@ -245,21 +235,21 @@ TEST_F(RunLog, FaultsNameFileAndKey) {
         return R"([{"car_position": )" + position + R"(, "car_direction": )" + direction +
                R"(, "slam_cones": )" + cones + "}]";
     };
-    EXPECT_EQ(error_in(with("[0, 0]", "[1, 0]", map)), "no error");
+    for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+             {with("[0, 0]", "[1, 0]", map), "no error"},
+             {"{}", "run.json: must be an array"},
+             {"[]", "run.json: holds no frame"},
+             {"[3]", "run.json: [0]: must be a JSON object"},
+             {R"([{"car_position": [0, 0]}])", "run.json: [0].car_direction: is missing"},
+             {with("[0]", "[1, 0]", map), "run.json: [0].car_position: must be [x, y]"},
+             {with("[0, 1e9]", "[1, 0]", map), "run.json: [0].car_position[1]: is beyond 10^7 m"},
+             {with("[0, 0]", "[0, 0]", map), "run.json: [0].car_direction: must not be [0, 0]"},
+             {with("[0, 0]", "[1, 0]", "[[], []]"), "run.json: [0].slam_cones: must hold five lists"},
+             {with("[0, 0]", "[1, 0]", "[[[1, \"2\"]], [], [], [], []]"),
+              "run.json: [0].slam_cones[0][0][1]: must be a number"},
+             {with("[0, 0]", "[1, 0]", "[[], [], [], [], []]"), "run.json: slam_cones: no frame has a cone"}})
+        EXPECT_EQ(error_in(text), message);
     EXPECT_THAT(error_in("[{"), HasSubstr("run.json:1: "));
-    EXPECT_EQ(error_in("{}"), "run.json: must be an array");
-    EXPECT_EQ(error_in("[]"), "run.json: holds no frame");
-    EXPECT_EQ(error_in("[3]"), "run.json: [0]: must be a JSON object");
-    EXPECT_EQ(error_in(R"([{"car_position": [0, 0]}])"), "run.json: [0].car_direction: is missing");
-    EXPECT_EQ(error_in(with("[0]", "[1, 0]", map)), "run.json: [0].car_position: must be [x, y]");
-    EXPECT_EQ(error_in(with("[0, 1e9]", "[1, 0]", map)), "run.json: [0].car_position[1]: is beyond 10^7 m");
-    EXPECT_EQ(error_in(with("[0, 0]", "[0, 0]", map)), "run.json: [0].car_direction: must not be [0, 0]");
-    EXPECT_EQ(error_in(with("[0, 0]", "[1, 0]", "[[], []]")),
-              "run.json: [0].slam_cones: must hold five lists");
-    EXPECT_EQ(error_in(with("[0, 0]", "[1, 0]", "[[[1, \"2\"]], [], [], [], []]")),
-              "run.json: [0].slam_cones[0][0][1]: must be a number");
-    EXPECT_EQ(error_in(with("[0, 0]", "[1, 0]", "[[], [], [], [], []]")),
-              "run.json: slam_cones: no frame has a cone");
     EXPECT_THAT(error_of([&] { (void)read_run_log(path("nowhere.json")); }), HasSubstr("nowhere.json"));
 }
 

@@ -3,7 +3,6 @@
 #include "conelane/invalid_input.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 #include <bit>
 
@@ -18,6 +17,10 @@ class SceneFileTest : public FileTest {
   protected:
     [[nodiscard]] std::string error_in(const std::string& text) const {
         return error_of([&] { static_cast<void>(read_scenes(file_with(text, "s.jsonl"))); });
+    }
+    /// Expects these messages for these texts, without the name of the file.
+    void expect_errors(const std::vector<std::pair<std::string, std::string>>& all) const {
+        for (const auto& [text, message] : all) EXPECT_EQ(error_in(text), "s.jsonl" + message) << text;
     }
     /// A scene with the rest of its line after the cones.
     [[nodiscard]] static std::string scene(const std::string& cones, const std::string& rest = "") {
@@ -213,21 +216,21 @@ TEST_F(SceneFileTest, RandomDoublesAndIdsSurviveARoundTripBitByBit) {
 
 TEST_F(SceneFileTest, NamesFileLineAndKeyOfAnInvalidScene) {
     const std::string good = scene(cone("1"));
-    EXPECT_EQ(error_in(""), "s.jsonl: holds no scene");
-    EXPECT_EQ(error_in("\n  \n"), "s.jsonl: holds no scene");
-    EXPECT_EQ(error_in(good + "[]"), "s.jsonl:2: must be a JSON object");
-    EXPECT_EQ(error_in(R"({"cones": []})"), "s.jsonl:1: pose: is missing");
-    EXPECT_EQ(error_in(R"({"pose": 3, "cones": []})"), "s.jsonl:1: pose: must be a JSON object");
-    EXPECT_EQ(error_in(R"({"pose": {"x": 1, "y": 1}})"), "s.jsonl:1: pose.yaw: is missing");
-    EXPECT_EQ(error_in(R"({"pose": {"x": 1, "y": 1, "yaw": 1}})"), "s.jsonl:1: cones: is missing");
-    EXPECT_EQ(error_in(good + scene("")), "s.jsonl:2: cones: must hold at least one cone");
-    EXPECT_EQ(error_in(scene(cone("1") + ", 4")), "s.jsonl:1: cones[1]: must be a JSON object");
-    EXPECT_EQ(error_in(scene(R"({"id": 1, "x": "1", "y": 2})")), "s.jsonl:1: cones[0].x: must be a number");
-    EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": null})")), "s.jsonl:1: cones[0].y: must be a number");
-    EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1})")), "s.jsonl:1: cones[0].y: is missing");
-    EXPECT_EQ(error_in(scene(cone("1"), R"(, "id": 3)")), "s.jsonl:1: id: must be a string");
-    EXPECT_EQ(error_in(scene(cone("1"), R"(, "id": "a")") + scene(cone("1"), R"(, "id": "a")")),
-              "s.jsonl:2: id: scene id \"a\" is there twice, first on line 1");
+    expect_errors({{"", ": holds no scene"},
+                   {"\n  \n", ": holds no scene"},
+                   {good + "[]", ":2: must be a JSON object"},
+                   {R"({"cones": []})", ":1: pose: is missing"},
+                   {R"({"pose": 3, "cones": []})", ":1: pose: must be a JSON object"},
+                   {R"({"pose": {"x": 1, "y": 1}})", ":1: pose.yaw: is missing"},
+                   {R"({"pose": {"x": 1, "y": 1, "yaw": 1}})", ":1: cones: is missing"},
+                   {good + scene(""), ":2: cones: must hold at least one cone"},
+                   {scene(cone("1") + ", 4"), ":1: cones[1]: must be a JSON object"},
+                   {scene(R"({"id": 1, "x": "1", "y": 2})"), ":1: cones[0].x: must be a number"},
+                   {scene(R"({"id": 1, "x": 1, "y": null})"), ":1: cones[0].y: must be a number"},
+                   {scene(R"({"id": 1, "x": 1})"), ":1: cones[0].y: is missing"},
+                   {scene(cone("1"), R"(, "id": 3)"), ":1: id: must be a string"},
+                   {scene(cone("1"), R"(, "id": "a")") + scene(cone("1"), R"(, "id": "a")"),
+                    ":2: id: scene id \"a\" is there twice, first on line 1"}});
     // The id that line 2 has by default.
     EXPECT_EQ(error_in(scene(cone("1"), R"(, "id": "2")") + good),
               "s.jsonl:2: id: scene id \"2\" is there twice, first on line 1");
@@ -242,61 +245,58 @@ TEST_F(SceneFileTest, NamesBadCones) {
     }
     EXPECT_EQ(read_scenes(file_with(scene(cone("-9223372036854775808")))).front().scene.cones[0].id,
               std::numeric_limits<ConeId>::min());
-    EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": 2, "confidence": 1.5})")),
-              "s.jsonl:1: cones[0].confidence: must be in [0, 1]");
-    EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": 2, "confidence": -0.1})")),
-              "s.jsonl:1: cones[0].confidence: must be in [0, 1]");
-    EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": 2, "color": "green"})")),
-              "s.jsonl:1: cones[0].color: must be one of blue, yellow, orange, big_orange, unknown");
-    EXPECT_EQ(error_in(scene(R"({"id": 1, "x": 1, "y": 2, "color": 1})")),
-              "s.jsonl:1: cones[0].color: must be one of blue, yellow, orange, big_orange, unknown");
+    expect_errors({{scene(R"({"id": 1, "x": 1, "y": 2, "confidence": 1.5})"),
+                    ":1: cones[0].confidence: must be in [0, 1]"},
+                   {scene(R"({"id": 1, "x": 1, "y": 2, "confidence": -0.1})"),
+                    ":1: cones[0].confidence: must be in [0, 1]"},
+                   {scene(R"({"id": 1, "x": 1, "y": 2, "color": "green"})"),
+                    ":1: cones[0].color: must be one of blue, yellow, orange, big_orange, unknown"},
+                   {scene(R"({"id": 1, "x": 1, "y": 2, "color": 1})"),
+                    ":1: cones[0].color: must be one of blue, yellow, orange, big_orange, unknown"}});
 }
 
 TEST_F(SceneFileTest, NamesBadGroundTruth) {
     const std::string cones = cone("1") + "," + cone("2") + "," + cone("3");
     const auto with = [&](const std::string& lane) { return scene(cones, R"(, "ground_truth": )" + lane); };
-    EXPECT_EQ(error_in(with(R"({"left": [1, 2, 99], "right": [3]})")),
-              "s.jsonl:1: ground_truth.left[2]: no cone has id 99");
-    EXPECT_EQ(error_in(with(R"({"left": [1, 1], "right": [3]})")),
-              "s.jsonl:1: ground_truth.left[1]: cone id 1 is there twice");
-    EXPECT_EQ(error_in(with(R"({"left": [1, 2], "right": [3, 2]})")),
-              "s.jsonl:1: ground_truth.right[1]: cone id 2 is there twice");
-    EXPECT_EQ(error_in(with(R"({"left": [1, 2.0], "right": [3]})")),
-              "s.jsonl:1: ground_truth.left[1]: must be an integer of 64 bits");
-    EXPECT_EQ(error_in(with(R"({"left": [1]})")), "s.jsonl:1: ground_truth.right: is missing");
-    EXPECT_EQ(error_in(with(R"({"left": 1, "right": []})")),
-              "s.jsonl:1: ground_truth.left: must be an array");
-    EXPECT_EQ(error_in(with(R"({"left": [1], "right": [2], "closed": 0})")),
-              "s.jsonl:1: ground_truth.closed: must be true or false");
+    expect_errors(
+        {{with(R"({"left": [1, 2, 99], "right": [3]})"), ":1: ground_truth.left[2]: no cone has id 99"},
+         {with(R"({"left": [1, 1], "right": [3]})"), ":1: ground_truth.left[1]: cone id 1 is there twice"},
+         {with(R"({"left": [1, 2], "right": [3, 2]})"),
+          ":1: ground_truth.right[1]: cone id 2 is there twice"},
+         {with(R"({"left": [1, 2.0], "right": [3]})"),
+          ":1: ground_truth.left[1]: must be an integer of 64 bits"},
+         {with(R"({"left": [1]})"), ":1: ground_truth.right: is missing"},
+         {with(R"({"left": 1, "right": []})"), ":1: ground_truth.left: must be an array"},
+         {with(R"({"left": [1], "right": [2], "closed": 0})"),
+          ":1: ground_truth.closed: must be true or false"}});
     const std::vector<AnnotatedScene> scenes = read_scenes(file_with(with(R"({"left": [1], "right": []})")));
     EXPECT_EQ(scenes.front().ground_truth, (Lane{{1}, {}, false})) << "short runs are allowed";
 }
 
 TEST_F(SceneFileTest, NamesBadProvenance) {
     const auto with = [&](const std::string& rest) { return scene(cone("1"), ", " + rest); };
-    EXPECT_EQ(error_in(with(R"("track": 1)")), "s.jsonl:1: track: must be a string");
-    EXPECT_EQ(error_in(with(R"("false_positive_rate": 1.5)")),
-              "s.jsonl:1: false_positive_rate: must be in [0, 1]");
-    EXPECT_EQ(error_in(with(R"("range": -1)")), "s.jsonl:1: range: must not be negative");
-    EXPECT_EQ(error_in(with(R"("seed": -1)")), "s.jsonl:1: seed: must be a non-negative integer of 64 bits");
-    EXPECT_EQ(error_in(with(R"("seed": 1.5)")), "s.jsonl:1: seed: must be a non-negative integer of 64 bits");
+    expect_errors({{with(R"("track": 1)"), ":1: track: must be a string"},
+                   {with(R"("false_positive_rate": 1.5)"), ":1: false_positive_rate: must be in [0, 1]"},
+                   {with(R"("range": -1)"), ":1: range: must not be negative"},
+                   {with(R"("seed": -1)"), ":1: seed: must be a non-negative integer of 64 bits"},
+                   {with(R"("seed": 1.5)"), ":1: seed: must be a non-negative integer of 64 bits"}});
 }
 
 TEST_F(SceneFileTest, NamesLineAndLastKeyOfInvalidJson) {
     const std::string good = scene(cone("1"));
-    EXPECT_EQ(error_in(good + R"({"pose": {"x": NaN, "y": 0})"), "s.jsonl:2: x: must be a finite number");
-    EXPECT_EQ(error_in(good + R"({"pose": {"x": 0, "y": nan})"), "s.jsonl:2: y: must be a finite number");
-    EXPECT_EQ(error_in(R"({"pose": {"yaw": Infinity}})"), "s.jsonl:1: yaw: must be a finite number");
-    EXPECT_EQ(error_in(R"({"pose": {"yaw": -Infinity}})"), "s.jsonl:1: yaw: must be a finite number");
-    EXPECT_EQ(error_in(R"({"pose": {"yaw": 1e999}})"), "s.jsonl:1: yaw: must be a finite number");
-    EXPECT_EQ(error_in(R"({"pose": {"yaw": -1e999}})"), "s.jsonl:1: yaw: must be a finite number");
-    EXPECT_EQ(error_in(good + good + R"({"pose": {"x": 0, "y)"), "s.jsonl:3: x: the JSON ends too early");
-    EXPECT_EQ(error_in(R"({"pose": {"x": 0)"), "s.jsonl:1: x: the JSON ends too early");
-    EXPECT_EQ(error_in("{"), "s.jsonl:1: the JSON ends too early");
-    EXPECT_EQ(error_in("hello"), "s.jsonl:1: not valid JSON at column 1");
-    EXPECT_EQ(error_in(R"({"pose": 1} {})"), "s.jsonl:1: pose: not valid JSON at column 13");
-    EXPECT_EQ(error_in("{\"id\": \"\xff\"}"), "s.jsonl:1: id: not valid JSON at column 9");
-    EXPECT_EQ(error_in(std::string(100000, '[')), "s.jsonl:1: the JSON ends too early");
+    expect_errors({{good + R"({"pose": {"x": NaN, "y": 0})", ":2: x: must be a finite number"},
+                   {good + R"({"pose": {"x": 0, "y": nan})", ":2: y: must be a finite number"},
+                   {R"({"pose": {"yaw": Infinity}})", ":1: yaw: must be a finite number"},
+                   {R"({"pose": {"yaw": -Infinity}})", ":1: yaw: must be a finite number"},
+                   {R"({"pose": {"yaw": 1e999}})", ":1: yaw: must be a finite number"},
+                   {R"({"pose": {"yaw": -1e999}})", ":1: yaw: must be a finite number"},
+                   {good + good + R"({"pose": {"x": 0, "y)", ":3: x: the JSON ends too early"},
+                   {R"({"pose": {"x": 0)", ":1: x: the JSON ends too early"},
+                   {"{", ":1: the JSON ends too early"},
+                   {"hello", ":1: not valid JSON at column 1"},
+                   {R"({"pose": 1} {})", ":1: pose: not valid JSON at column 13"},
+                   {"{\"id\": \"\xff\"}", ":1: id: not valid JSON at column 9"},
+                   {std::string(100000, '['), ":1: the JSON ends too early"}});
 }
 
 TEST_F(SceneFileTest, NamesFilesThatCannotBeRead) {

@@ -2,9 +2,8 @@
 
 #include "evaluation/formats/scene_set.hpp"
 
-#include "evaluation/formats/left_out_scenes.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/world/degenerate_truth.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {

@@ -1,25 +1,15 @@
 #include "evaluation/formats/track_readers.hpp"
 
-#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "evaluation/world/track_checks.hpp"
 #include "tests/support/boundary_checks.hpp"
+#include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"
+#include "tests/support/refusal.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <map>
-#include <numbers>
 #include <numeric>
-#include <string>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <gmock/gmock.h>
-#include <unistd.h>
 
 namespace conelane {
 namespace {
@@ -28,36 +18,17 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-class TrackFiles : public ::testing::Test {
+class TrackFiles : public FileTest {
   protected:
-    void SetUp() override {
-        const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-        directory_ = std::filesystem::path(::testing::TempDir()) /
-                     ("conelane_tracks_" + std::to_string(::getpid())) / info->name();
-        std::filesystem::remove_all(directory_);
-        std::filesystem::create_directories(directory_);
-    }
-    void TearDown() override {
-        std::filesystem::remove_all(std::filesystem::path(::testing::TempDir()) /
-                                    ("conelane_tracks_" + std::to_string(::getpid())));
-    }
-
     std::filesystem::path write(const std::string& name, const std::string& content) const {
-        std::ofstream(directory_ / name, std::ios::binary) << content;
-        return directory_ / name;
+        return file_with(content, name);
     }
-
-    template <typename Read>
-    static std::string error_of(const Read& read) {
-        try {
-            static_cast<void>(read());
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "no error";
+    /// Expects that `read` refuses each text, with a message that has these words.
+    void expect_faults(const std::function<void(const std::string&)>& read,
+                       const std::vector<std::pair<std::string, std::string>>& faults) const {
+        for (const auto& [text, words] : faults)
+            EXPECT_THAT(error_of([&] { read(text); }), HasSubstr(words)) << text;
     }
-
-    std::filesystem::path directory_;
 };
 
 std::vector<ConeId> ids(const Track& track, const std::vector<std::size_t>& boundary) {
@@ -66,9 +37,6 @@ std::vector<ConeId> ids(const Track& track, const std::vector<std::size_t>& boun
     return result;
 }
 
-// --- FSD racetrack dataset
-// -----------------------------------------------------------------------------------
-
 /// Two nested triangles, driven counter-clockwise, and cone 99 of no boundary.
 class FsdFiles : public TrackFiles {
   protected:
@@ -76,17 +44,15 @@ class FsdFiles : public TrackFiles {
         "10: [0, 0]\n11: [8, 0]\n12: [4, 8]\n20:\n- -4\n- -3\n21: [12, -3]\n22: [4, 14.5]\n99: [30, 1e1]\n";
     static constexpr const char* kBoundaries = "left: [10, 11, 12]\nright:\n- 20\n- 21\n- 22\n";
 
-    [[nodiscard]] std::string error_with(const std::string& map, const std::string& boundaries) const {
-        write("cone_map_3.yaml", map);
-        write("boundaries_3.yaml", boundaries);
-        return error_of([&] { return read_fsd_track(directory_, 3); });
+    void write_both(const std::string& map, const std::string& boundaries) const {
+        file_with(map, "cone_map_3.yaml");
+        file_with(boundaries, "boundaries_3.yaml");
     }
 };
 
 TEST_F(FsdFiles, GiveBoundariesAndKeepConesOfNone) {
-    write("cone_map_3.yaml", kMap);
-    write("boundaries_3.yaml", kBoundaries);
-    const Track track = read_fsd_track(directory_, 3);
+    write_both(kMap, kBoundaries);
+    const Track track = read_fsd_track(path(""), 3);
     EXPECT_EQ(track.name, "fsd_3");
     EXPECT_TRUE(track.closed);
     EXPECT_THAT(ids(track, track.left), ElementsAre(10, 11, 12));
@@ -99,39 +65,38 @@ TEST_F(FsdFiles, GiveBoundariesAndKeepConesOfNone) {
 }
 
 TEST_F(FsdFiles, LastIdThatRepeatsTheFirstIsDropped) {
-    write("cone_map_3.yaml", kMap);
-    write("boundaries_3.yaml", "left: [10, 11, 12, 10]\nright: [20, 21, 22]\n");
-    EXPECT_THAT(ids(read_fsd_track(directory_, 3), read_fsd_track(directory_, 3).left),
-                ElementsAre(10, 11, 12));
+    write_both(kMap, "left: [10, 11, 12, 10]\nright: [20, 21, 22]\n");
+    EXPECT_THAT(ids(read_fsd_track(path(""), 3), read_fsd_track(path(""), 3).left), ElementsAre(10, 11, 12));
 }
 
 TEST_F(FsdFiles, FaultsAreNamedByFileLineAndKey) {
-    EXPECT_THAT(error_with("1: [0, 0]\n1: [1, 1]\n", kBoundaries),
-                HasSubstr("cone_map_3.yaml:2: 1: id is there twice"));
-    EXPECT_THAT(error_with("1: [0, .nan]\n", kBoundaries),
-                HasSubstr("cone_map_3.yaml:1: 1[1]: is not finite"));
-    EXPECT_THAT(error_with("1: [0, 1e12]\n", kBoundaries), HasSubstr("1[1]: is beyond 10^7 m"));
-    EXPECT_THAT(error_with("1: [0, x]\n", kBoundaries), HasSubstr(":1: 1[1]: is not a number"));
-    EXPECT_THAT(error_with("1: [0, 1, 2]\n", kBoundaries), HasSubstr(":1: 1: is not [x, y]"));
-    EXPECT_THAT(error_with("one: [0, 1]\n", kBoundaries), HasSubstr(":1: id: is not an integer"));
-    EXPECT_THAT(error_with("- 1\n", kBoundaries), HasSubstr("cone_map_3.yaml:1: is not a map"));
-    EXPECT_THAT(error_with("1: [0, 1\n2: 3", kBoundaries), HasSubstr("not YAML"));
-    EXPECT_THAT(error_with(kMap, "left: [10, 11, 12]\nright: [20,\n 7, 22]\n"),
-                HasSubstr("boundaries_3.yaml:3: right[1]: no cone has id 7"));
-    EXPECT_THAT(error_with(kMap, "left: [10, 11, 12]\nright: [20, 21, 11]\n"),
-                HasSubstr("boundaries_3.yaml:2: right[2]: id 11 is there twice"));
-    EXPECT_THAT(error_with(kMap, "left: [10, 11, 12]\n"), HasSubstr("right: missing"));
-    EXPECT_THAT(error_with(kMap, "left: [10, 11]\nright: [20, 21, 22]\n"), HasSubstr("left: 2 cones"));
-    EXPECT_THAT(error_with(kMap, "left: 10\nright: [20, 21, 22]\n"), HasSubstr(":1: left: is not a list"));
-    EXPECT_THAT(error_with("", kBoundaries), HasSubstr("is not a map"));
-    std::filesystem::remove(directory_ / "boundaries_3.yaml");
-    write("cone_map_3.yaml", kMap);
-    EXPECT_THAT(error_of([&] { return read_fsd_track(directory_, 3); }),
-                HasSubstr("boundaries_3.yaml: no such file"));
+    const auto of_map = [&](const std::string& map) {
+        write_both(map, kBoundaries);
+        (void)read_fsd_track(path(""), 3);
+    };
+    expect_faults(of_map, {{"1: [0, 0]\n1: [1, 1]\n", "cone_map_3.yaml:2: 1: id is there twice"},
+                           {"1: [0, .nan]\n", "cone_map_3.yaml:1: 1[1]: is not finite"},
+                           {"1: [0, 1e12]\n", "1[1]: is beyond 10^7 m"},
+                           {"1: [0, x]\n", ":1: 1[1]: is not a number"},
+                           {"1: [0, 1, 2]\n", ":1: 1: is not [x, y]"},
+                           {"one: [0, 1]\n", ":1: id: is not an integer"},
+                           {"- 1\n", "cone_map_3.yaml:1: is not a map"},
+                           {"1: [0, 1\n2: 3", "not YAML"},
+                           {"", "is not a map"}});
+    const auto of_boundaries = [&](const std::string& boundaries) {
+        write_both(kMap, boundaries);
+        (void)read_fsd_track(path(""), 3);
+    };
+    expect_faults(
+        of_boundaries,
+        {{"left: [10, 11, 12]\nright: [20,\n 7, 22]\n", "boundaries_3.yaml:3: right[1]: no cone has id 7"},
+         {"left: [10, 11, 12]\nright: [20, 21, 11]\n", "boundaries_3.yaml:2: right[2]: id 11 is there twice"},
+         {"left: [10, 11, 12]\n", "right: missing"},
+         {"left: [10, 11]\nright: [20, 21, 22]\n", "left: 2 cones"},
+         {"left: 10\nright: [20, 21, 22]\n", ":1: left: is not a list"}});
+    std::filesystem::remove(path("boundaries_3.yaml"));
+    EXPECT_EQ(error_of([&] { (void)read_fsd_track(path(""), 3); }), "boundaries_3.yaml: no such file");
 }
-
-// --- Doubled cones
-// -------------------------------------------------------------------------------------------
 
 TEST(DoubledCones, TheLaterOneLeavesBoundaryAndMapAndOtherBoundariesStay) {
     Track track;
@@ -144,9 +109,6 @@ TEST(DoubledCones, TheLaterOneLeavesBoundaryAndMapAndOtherBoundariesStay) {
     ASSERT_EQ(single.cones.size(), 5u);
     EXPECT_EQ(single.cones.back().id, 6);
 }
-
-// --- PacSim
-// --------------------------------------------------------------------------------------------------
 
 std::string pacsim(const std::string& closed, const std::string& right) {
     return "track:\n  lanesFirstWithLastConnected: " + closed +
@@ -176,29 +138,20 @@ TEST_F(TrackFiles, PacsimOpenTrackWithUnknownConesAndColors) {
 }
 
 TEST_F(TrackFiles, PacsimFaultsAreNamedByFileLineAndKey) {
-    const auto error = [&](const std::string& content) {
-        const auto file = write("t.yaml", content);
-        return error_of([&] { return read_pacsim_track(file); });
-    };
-    EXPECT_THAT(error(pacsim("true", kPacsimRight)), HasSubstr("left: 2 cones, but a closed course"));
-    EXPECT_THAT(error(pacsim("maybe", kPacsimRight)),
-                HasSubstr("t.yaml:2: track.lanesFirstWithLastConnected: is not true or false"));
-    EXPECT_THAT(
-        error(pacsim("false",
-                     "  - {position: [0, -2, 0], class: yellow}\n  - {position: [1, .inf, 0], class: a}\n")),
-        HasSubstr("t.yaml:9: track.right[1].position[1]: is not finite"));
-    EXPECT_THAT(error(pacsim("false", "  - {class: yellow}\n")),
-                HasSubstr(":8: track.right[0].position: missing"));
-    EXPECT_THAT(error(pacsim("false", "  - {position: [1, 2, 3]}\n")),
-                HasSubstr("track.right[0].class: missing"));
-    EXPECT_THAT(error(pacsim("false", "  - {position: 1, class: a}\n")), HasSubstr("is not [x, y, z]"));
-    EXPECT_THAT(error("track: []\n"), HasSubstr("t.yaml:1: track: is not a map"));
-    EXPECT_THAT(error("rack: 1\n"), HasSubstr("track: missing"));
-    EXPECT_THAT(error_of([&] { return read_pacsim_track(directory_); }), HasSubstr("is a directory"));
+    expect_faults(
+        [&](const std::string& text) { (void)read_pacsim_track(write("t.yaml", text)); },
+        {{pacsim("true", kPacsimRight), "left: 2 cones, but a closed course"},
+         {pacsim("maybe", kPacsimRight), "t.yaml:2: track.lanesFirstWithLastConnected: is not true or false"},
+         {pacsim("false",
+                 "  - {position: [0, -2, 0], class: yellow}\n  - {position: [1, .inf, 0], class: a}\n"),
+          "t.yaml:9: track.right[1].position[1]: is not finite"},
+         {pacsim("false", "  - {class: yellow}\n"), ":8: track.right[0].position: missing"},
+         {pacsim("false", "  - {position: [1, 2, 3]}\n"), "track.right[0].class: missing"},
+         {pacsim("false", "  - {position: 1, class: a}\n"), "is not [x, y, z]"},
+         {"track: []\n", "t.yaml:1: track: is not a map"},
+         {"rack: 1\n", "track: missing"}});
+    EXPECT_THAT(error_of([&] { (void)read_pacsim_track(path("")); }), HasSubstr("is a directory"));
 }
-
-// --- EUFS
-// ----------------------------------------------------------------------------------------------------
 
 constexpr const char* kEufsHeader = "tag,x,y,direction,x_variance,y_variance,xy_covariance\n";
 
@@ -390,39 +343,31 @@ TEST_F(TrackFiles, EufsCourseIsClosedAcrossAGate) {
 }
 
 TEST_F(TrackFiles, EufsFaultsAreNamedByFileLineAndKey) {
-    const auto error = [&](const std::string& content) {
-        const auto file = write("t.csv", content);
-        return error_of([&] { return read_eufs_track(file); });
-    };
     const std::string header = kEufsHeader;
-    EXPECT_THAT(error(""), HasSubstr("t.csv: tag: column missing"));
-    EXPECT_THAT(error("tag,x,direction\n"), HasSubstr("t.csv:1: y: column missing"));
-    EXPECT_THAT(error(header + "blue,1\n"), HasSubstr("t.csv:2: y: missing"));
-    EXPECT_THAT(error(header + "blue,1,2x,0\n"), HasSubstr("t.csv:2: y: '2x' is not a number"));
-    EXPECT_THAT(error(header + "\r\nblue,nan,2,0\r\n"), HasSubstr("t.csv:3: x: is not finite"));
-    EXPECT_THAT(error(header + "blue,1,2,0\n"), HasSubstr("left: 1 cones"));
-    EXPECT_THAT(error(header + "green,1,nan,0\n"), HasSubstr("t.csv:2: y: is not finite"));
-    EXPECT_THAT(error(header + "car_start,1,2,0\ncar_start,1,2,0\n"),
-                HasSubstr(":3: car_start: is there twice"));
-    EXPECT_THAT(error(header + "car_start,1,2,0\n"), HasSubstr("left: 0 cones"));
     std::string side_by_side = header + "car_start,0,0,0\n";
     for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {0, 1}}) {
         side_by_side += eufs_row("blue", x, y) + eufs_row("yellow", x + 5, y);
     }
-    EXPECT_THAT(error(side_by_side), HasSubstr("do not bound a closed course"));
-    std::string wrong_way = eufs_rings(true);
-    wrong_way.replace(wrong_way.rfind(",1.5"), 4, ",-1.5");
-    EXPECT_THAT(error(wrong_way), HasSubstr("t.csv:28: direction: the car does not drive"));
+    const std::string wrong_way = with_other(eufs_rings(true), ",1.500000", ",-1.500000");
+    expect_faults([&](const std::string& text) { (void)read_eufs_track(write("t.csv", text)); },
+                  {{"", "t.csv: tag: column missing"},
+                   {"tag,x,direction\n", "t.csv:1: y: column missing"},
+                   {header + "blue,1\n", "t.csv:2: y: missing"},
+                   {header + "blue,1,2x,0\n", "t.csv:2: y: '2x' is not a number"},
+                   {header + "\r\nblue,nan,2,0\r\n", "t.csv:3: x: is not finite"},
+                   {header + "blue,1,2,0\n", "left: 1 cones"},
+                   {header + "green,1,nan,0\n", "t.csv:2: y: is not finite"},
+                   {header + "car_start,1,2,0\ncar_start,1,2,0\n", ":3: car_start: is there twice"},
+                   {header + "car_start,1,2,0\n", "left: 0 cones"},
+                   {side_by_side, "do not bound a closed course"},
+                   {wrong_way, "t.csv:28: direction: the car does not drive"}});
 }
-
-// --- SPEC
-// ----------------------------------------------------------------------------------------------------
 
 TEST_F(FsdFiles, SpecLoadsAllNumbersAscendingOrThoseNamed) {
     for (const char* const map : {"cone_map_12.yaml", "cone_map_3.yaml"}) write(map, kMap);
     for (const char* const both : {"boundaries_12.yaml", "boundaries_3.yaml"}) write(both, kBoundaries);
     write("cone_map_old.yaml", "no track");
-    const std::string spec = "fsd:" + directory_.string();
+    const std::string spec = "fsd:" + path("").string();
     const std::vector<Track> all = load_tracks(spec);
     ASSERT_EQ(all.size(), 2u);
     EXPECT_EQ(all[0].name, "fsd_3");
@@ -450,12 +395,12 @@ TEST_F(TrackFiles, SpecLoadsFilesAndGeneratedTracks) {
 }
 
 TEST_F(TrackFiles, SpecOfAFolderLoadsAllFilesOfItsKindByName) {
-    std::filesystem::create_directory(directory_ / "courses");
+    std::filesystem::create_directory(path("") / "courses");
     write("courses/z.csv", eufs_rings(true));
     write("courses/a.csv", eufs_rings(true));
     write("courses/b.yaml", pacsim("false", kPacsimRight));
     write("courses/README.md", "courses");
-    const std::string folder = (directory_ / "courses").string();
+    const std::string folder = (path("") / "courses").string();
     const std::vector<Track> tracks = load_tracks("eufs:" + folder);
     ASSERT_EQ(tracks.size(), 2u);
     EXPECT_EQ(tracks[0].name, "eufs_a");
@@ -465,23 +410,31 @@ TEST_F(TrackFiles, SpecOfAFolderLoadsAllFilesOfItsKindByName) {
 }
 
 TEST_F(TrackFiles, SpecFaultsNameTheSpec) {
-    const auto error = [](const std::string& spec) { return error_of([&] { return load_tracks(spec); }); };
-    EXPECT_THAT(error(""), HasSubstr("is not generated:NAME"));
-    EXPECT_THAT(error("circle"), HasSubstr("circle: is not generated:NAME"));
-    EXPECT_THAT(error("made:circle"), HasSubstr("made:circle: 'made' is not one of"));
-    EXPECT_THAT(error("generated:oval"),
-                HasSubstr("generated:oval: generated track: 'oval' is not one of straight"));
-    EXPECT_THAT(error("generated:circle@x"), HasSubstr("'circle@x' has no seed"));
-    EXPECT_THAT(error("generated:circle,circle"), HasSubstr("circle is there twice"));
-    EXPECT_THAT(error("generated:circle,"), HasSubstr("'' is not one of"));
-    EXPECT_THAT(error("fsd:no_such_folder"), HasSubstr("no_such_folder is not a directory"));
-    EXPECT_THAT(error("fsd:" + directory_.string()), HasSubstr("holds no cone_map_N.yaml"));
-    EXPECT_THAT(error("pacsim:no_such_file"), HasSubstr("no_such_file: no such file"));
-    EXPECT_THAT(error("eufs:no_such_file"), HasSubstr("no_such_file: no such file"));
+    expect_faults(
+        [](const std::string& spec) { (void)load_tracks(spec); },
+        {{"", "is not generated:NAME"},
+         {"circle", "circle: is not generated:NAME"},
+         {"made:circle", "made:circle: 'made' is not one of generated, fsd, pacsim, eufs and ftlog"},
+         {"generated:oval", "generated:oval: generated track: 'oval' is not one of straight"},
+         {"generated:circle@x", "'circle@x' has no seed"},
+         {"generated:circle,circle", "circle is there twice"},
+         {"generated:circle,", "'' is not one of"},
+         {"fsd:no_such_folder", "no_such_folder is not a directory"},
+         {"fsd:" + path("").string(), "holds no cone_map_N.yaml"},
+         {"pacsim:no_such_file", "no_such_file: no such file"},
+         {"eufs:no_such_file", "no_such_file: no such file"}});
 }
 
-// --- Recorded tracks
-// -----------------------------------------------------------------------------------------
+/// The help names each source once, in the order of the table.
+TEST(TrackFormats, AreNamedByTheHelp) {
+    EXPECT_EQ(track_grammar(),
+              "generated:NAME[@SEED][,...], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE");
+    for (const TrackFormat* format : track_formats()) {
+        EXPECT_THAT(track_format_lines(), HasSubstr(std::string(format->reads)));
+        EXPECT_NE(format->read == nullptr, format->load == nullptr) << format->word;
+        EXPECT_EQ(format->read != nullptr, !format->ending.empty()) << format->word;
+    }
+}
 
 /// Properties that distinguish a recorded course from most others.
 struct Peculiar {

@@ -5,15 +5,7 @@
 #include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"
 
-#include <array>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 namespace conelane {
 namespace {
@@ -164,8 +156,8 @@ void expect_same_line(const std::vector<Point>& line, const std::vector<Point>& 
 TEST_F(WrittenCourses, LeaveOutConesThatCannotBelong) {
     struct Fault {
         std::string name;
-        std::function<void(std::vector<Row>&)> add;
-        std::vector<std::size_t> cones;
+        std::vector<Row> added;
+        std::vector<std::pair<std::size_t, std::string>> recolored;
         std::string warning;
     };
     for (const bool closed : {true, false}) {
@@ -174,65 +166,40 @@ TEST_F(WrittenCourses, LeaveOutConesThatCannotBelong) {
         const Track expected = read(rows);
         ASSERT_EQ(expected.closed, closed);
         ASSERT_THAT(expected.warnings, IsEmpty());
+        const std::vector<Row> ghosts{
+            {"blue", 80.0, -40.0}, {"blue", -60.0, 90.0}, {"big_orange", -60.0, -90.0}};
         for (const Fault& fault : {
-                 Fault{"a ghost",
-                       [](auto& all) {
-                           all.push_back({"yellow", 180.0, -40.0});
-                       },
-                       {n},
-                       "is far from all"},
-                 {"a near ghost",
-                  [](auto& all) {
-                      all.push_back({"yellow", -14.0, -21.0});
-                  },
-                  {n},
-                  "the yellow cone of line"},
-                 {"a pair of ghosts",
-                  [](auto& all) {
-                      all.push_back({"yellow", 180.0, -40.0});
-                      all.push_back({"blue", 180.0, -36.0});
-                  },
-                  {n, n + 1},
-                  "is far from all"},
-                 {"two ghosts of a color",
-                  [](auto& all) {
-                      all.push_back({"blue", 80.0, -40.0});
-                      all.push_back({"blue", -60.0, 90.0});
-                      all.push_back({"big_orange", -60.0, -90.0});
-                  },
-                  {n, n + 1, n + 2},
-                  "is far from all"},
-                 {"the wrong color",
-                  [](auto& all) { all[4].tag = "yellow"; },
-                  {4},
-                  "the yellow cone of line 6 at"},
-                 {"the wrong color twice",
-                  [&](auto& all) {
-                      all[4].tag = "yellow";
-                      all[n - 4].tag = "blue";
-                  },
-                  {4, n - 4},
-                  "stands in the other boundary"},
-                 {"the wrong color first", [](auto& all) { all[0].tag = "yellow"; }, {0}, "of line 2 at"},
-                 {"the wrong color last",
-                  [&](auto& all) { all[n - 1].tag = "blue"; },
-                  {n - 1},
-                  "the blue cone of line"},
+                 Fault{"a ghost", {{"yellow", 180.0, -40.0}}, {}, "is far from all"},
+                 {"a near ghost", {{"yellow", -14.0, -21.0}}, {}, "the yellow cone of line"},
+                 {"two ghosts", {{"yellow", 180.0, -40.0}, {"blue", 180.0, -36.0}}, {}, "is far from all"},
+                 {"two ghosts of a color", ghosts, {}, "is far from all"},
+                 {"the wrong color", {}, {{4, "yellow"}}, "the yellow cone of line 6 at"},
+                 {"twice", {}, {{4, "yellow"}, {n - 4, "blue"}}, "stands in the other boundary"},
+                 {"the wrong color first", {}, {{0, "yellow"}}, "of line 2 at"},
+                 {"the wrong color last", {}, {{n - 1, "blue"}}, "the blue cone of line"},
              }) {
             SCOPED_TRACE(fault.name + (closed ? ", closed" : ", open"));
             std::vector<Row> written = rows;
-            fault.add(written);
+            std::vector<std::size_t> cones;  // that cannot belong
+            for (const auto& [cone, tag] : fault.recolored) {
+                written[cone].tag = tag;
+                cones.push_back(cone);
+            }
+            for (const Row& row : fault.added) {
+                cones.push_back(written.size());
+                written.push_back(row);
+            }
             const Track track = read(written);
             EXPECT_EQ(track.cones.size(), written.size()) << "they stay on the map";
             EXPECT_EQ(track.closed, closed);
-            EXPECT_EQ(track.left.size() + track.right.size() + fault.cones.size(), written.size());
-            for (const std::size_t cone : fault.cones) {
+            EXPECT_EQ(track.left.size() + track.right.size() + cones.size(), written.size());
+            for (const std::size_t cone : cones) {
                 EXPECT_THAT(track.left, testing::Not(testing::Contains(cone)));
                 EXPECT_THAT(track.right, testing::Not(testing::Contains(cone)));
             }
             EXPECT_THAT(track.warnings, ElementsAre(AllOf(HasSubstr("left out of the boundaries: "),
                                                           HasSubstr(fault.warning))));
-            if (!closed && (fault.cones[0] == 0 || fault.cones[0] == n - 1)) continue;  // shorter by a cone
+            if (!closed && (cones[0] == 0 || cones[0] == n - 1)) continue;  // shorter by a cone
             expect_same_line(boundaries(track).left, boundaries(expected).left, closed);
             expect_same_line(boundaries(track).right, boundaries(expected).right, closed);
         }

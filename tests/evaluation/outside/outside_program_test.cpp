@@ -12,19 +12,7 @@
 #include "tests/support/file_test.hpp"
 #include "tests/support/random_scenes.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <csignal>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <boost/random/uniform_int_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

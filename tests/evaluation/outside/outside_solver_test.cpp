@@ -4,8 +4,7 @@
 #include "evaluation/outside/outside_solver.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/outside/connecting_flow.hpp"
-#include "evaluation/outside/permuted_program.hpp"
+#include "evaluation/outside/solver_input.hpp"
 #include "model/deadline.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -13,15 +12,6 @@
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 #include "tests/support/test_paths.hpp"
-
-#include <algorithm>
-#include <filesystem>
-#include <set>
-#include <string>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {

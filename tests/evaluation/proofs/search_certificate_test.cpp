@@ -3,7 +3,7 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/formats/search_certificate_file.hpp"
+#include "evaluation/formats/certificate_file.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
 #include "evaluation/proofs/exact_costs.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -13,7 +13,6 @@
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/six_cone_lane.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
@@ -57,8 +56,8 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
         RldParameters parameters;
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
-        parameters.k_edge = static_cast<double>(seed % 4);
-        parameters.k_gap = static_cast<double>(seed % 6);
+        parameters.nearest_of_edge = static_cast<double>(seed % 4);
+        parameters.nearest_of_gap = static_cast<double>(seed % 6);
         parameters.d_side = seed % 4 == 1 ? 2.5 : 0.0;
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
@@ -81,8 +80,8 @@ TEST(SearchCertificate, OfFacingCostsAmongNearestConesIsVerified) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 10);
         RldParameters parameters;
-        parameters.w_v = 0.8;
-        parameters.k_edge = static_cast<double>(1 + seed % 3);
+        parameters.facing_weight = 0.8;
+        parameters.nearest_of_edge = static_cast<double>(1 + seed % 3);
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
         if (!certificate.lane_graph) continue;
         const SearchVerdict verdict = verify(certificate, scene, parameters);
@@ -224,50 +223,39 @@ struct Forgery {
     const char* reason;
 };
 
+std::function<void(SearchCertificate&)> without_graph(double bound) {
+    return [=](SearchCertificate& certificate) {
+        certificate.lane_graph.reset();
+        certificate.bound = bound;
+    };
+}
+
+/// A clique in the first part, unless it is empty, and its multiplier.
+std::function<void(SearchCertificate&)> with_clique(const std::vector<Edge>& clique,
+                                                    SearchCertificate::Units units) {
+    return [=](SearchCertificate& certificate) {
+        if (!clique.empty()) certificate.parts[0].cliques = {clique};
+        certificate.parts[0].stages[0].clique = {{0, units}};
+    };
+}
+
 TEST(SearchCertificate, CannotBeForged) {
+    const LaneGraph half{{{0, 1}, {1, 2}}};
+    const LaneGraph across{{{0, 1}, {1, 5}, {3, 4}, {2, 4}}};
     const std::vector<Forgery> forgeries{
         {"a higher bound", [](auto& c) { c.bound = -3.9; }, "above"},
         {"a bound that is not a number", [](auto& c) { c.bound = std::nan(""); }, "number"},
         {"no bound", [](auto& c) { c.bound = -kInfinity; }, "nothing is claimed"},
-        {"a huge bound",
-         [](auto& c) {
-             c.lane_graph.reset();
-             c.bound = 1e300;
-         },
-         "out of range"},
+        {"a huge bound", without_graph(1e300), "out of range"},
         {"another objective", [](auto& c) { c.objective = -4.0 + 1e-6; }, "does not cost"},
         {"no objective", [](auto& c) { c.objective.reset(); }, "no objective"},
-        {"a lower objective with its bound",
-         [](auto& c) {
-             c.objective = -5.0;
-             c.bound = -5.0;
-         },
-         "does not cost"},
-        {"half of a lane",
-         [](auto& c) {
-             c.lane_graph = LaneGraph{{{0, 1}, {1, 2}}};
-         },
-         "endpoints"},
-        {"a lane across",
-         [](auto& c) {
-             c.lane_graph = LaneGraph{{{0, 1}, {1, 5}, {3, 4}, {2, 4}}};
-         },
-         "none"},
+        {"a lower objective with its bound", [](auto& c) { c.objective = c.bound = -5.0; }, "does not cost"},
+        {"half of a lane", [&](auto& c) { c.lane_graph = half; }, "endpoints"},
+        {"a lane across", [&](auto& c) { c.lane_graph = across; }, "none"},
         {"an unknown cone", [](auto& c) { c.lane_graph->edges.back().j = 6; },
          "a cone that the scene does not have"},
-        {"no lane graph at all",
-         [](auto& c) {
-             c.lane_graph.reset();
-             c.objective.reset();
-             c.bound = kInfinity;
-         },
-         "costs less"},
-        {"a bound without its lane graph",
-         [](auto& c) {
-             c.lane_graph.reset();
-             c.bound = -3.0;
-         },
-         "costs less"},
+        {"no lane graph at all", without_graph(kInfinity), "costs less"},
+        {"a bound without its graph", without_graph(-3.0), "costs less"},
         {"a multiplier below 0", [](auto& c) { c.parts[0].stages[0].cone[2] = -1; }, "negative"},
         {"a heading's below 0", [](auto& c) { c.parts[0].stages[0].heading = -1; }, "negative"},
         {"a multiplier that overflows",
@@ -278,32 +266,11 @@ TEST(SearchCertificate, CannotBeForged) {
         {"no multipliers", [](auto& c) { c.parts[0].stages.clear(); }, "missing"},
         {"no part", [](auto& c) { c.parts.clear(); }, "missing"},
         {"another part", [](auto& c) { c.parts[0].far_start = 2; }, "missing"},
-        {"a clique of edges that go together",
-         [](auto& c) {
-             c.parts[0].cliques = {{{0, 1}, {1, 2}}};
-         },
-         "may go together"},
-        {"a clique of one edge twice",
-         [](auto& c) {
-             c.parts[0].cliques = {{{0, 1}, {0, 1}}};
-         },
-         "go together"},
-        {"a clique of no edge",
-         [](auto& c) {
-             c.parts[0].cliques = {{{0, 2}}};
-         },
-         "an invalid edge"},
-        {"a multiplier of no clique",
-         [](auto& c) {
-             c.parts[0].stages[0].clique = {{0, 1}};
-         },
-         "no clique"},
-        {"a clique's below 0",
-         [](auto& c) {
-             c.parts[0].cliques = {{{0, 1}}};
-             c.parts[0].stages[0].clique = {{0, -1}};
-         },
-         "negative"},
+        {"a clique of edges that go together", with_clique({{0, 1}, {1, 2}}, 0), "may go together"},
+        {"a clique of one edge twice", with_clique({{0, 1}, {0, 1}}, 0), "go together"},
+        {"a clique of no edge", with_clique({{0, 2}}, 0), "an invalid edge"},
+        {"a multiplier of no clique", with_clique({}, 1), "no clique"},
+        {"a clique's below 0", with_clique({{0, 1}}, -1), "negative"},
     };
     for (const Forgery& forgery : forgeries) {
         SCOPED_TRACE(forgery.what);
@@ -513,7 +480,7 @@ TEST_F(SearchCertificateFile, NamesTheLineAndKeyOfAnError) {
     };
     EXPECT_THAT(refusal(R"({"scene": "a"})"), testing::AllOf(HasSubstr("bad.jsonl:2"), HasSubstr("parts")));
     EXPECT_THAT(refusal(R"({"scene": "a", "parts": [{"cliques": []}]})"), HasSubstr("parts[0].stages"));
-    EXPECT_THAT(refusal(R"({"scene": "a", "edges": [[1]], "parts": []})"), HasSubstr("pair of cone ids"));
+    EXPECT_THAT(refusal(R"({"scene": "a", "edges": [[1]], "parts": []})"), HasSubstr("pair of numbers"));
     EXPECT_THAT(refusal(R"({"scene": "a", "bound": 1, "infeasible": true, "parts": []})"),
                 HasSubstr("bound"));
     EXPECT_THAT(

@@ -1,18 +1,9 @@
 #include "evaluation/world/centre_line.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/world/boundary_matching.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "tests/support/recorded_tracks.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <numbers>
-#include <string>
-
-#include <gmock/gmock.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -4,14 +4,7 @@
 #include "evaluation/world/rounded_path.hpp"
 #include "evaluation/world/track_layouts.hpp"
 #include "tests/support/boundary_checks.hpp"
-
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <string>
-#include <utility>
-
-#include <gmock/gmock.h>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -139,44 +139,46 @@ TEST(SceneGeneration, BytesAreTheSameOnEveryMachine) {
 }
 
 TEST(SceneGeneration, NamesOptionsOutOfRange) {
-    const auto error = [](const std::function<void(SceneOptions&)>& change) -> std::string {
+    static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const auto colored = [](double error_rate, double unknown_rate) {
+        return [=](SceneOptions& o) {
+            o.with_color = true;
+            o.color_error_rate = error_rate;
+            o.color_unknown_rate = unknown_rate;
+        };
+    };
+    for (const auto& [change, message] :
+         std::vector<std::pair<std::function<void(SceneOptions&)>, std::string>>{
+             {[](SceneOptions&) {}, "accepted"},
+             {[](SceneOptions& o) { o.false_positive_rates = {}; }, "fp: must hold at least one value"},
+             {[](SceneOptions& o) { o.false_positive_rates = {1.0}; }, "fp: must be in [0, 0.99]"},
+             {[](SceneOptions& o) { o.false_positive_rates = {kNan}; }, "fp: must be in [0, 0.99]"},
+             {[](SceneOptions& o) {
+                  o.false_positive_rates = {0.3, 0.3};
+              },
+              "fp: 0.3 is there twice"},
+             {[](SceneOptions& o) { o.ranges_m = {0.0}; }, "range: must be in [0.1, 1000]"},
+             {[](SceneOptions& o) { o.every_m = 0.0; }, "every: must be in [0.01, 1000]"},
+             {[](SceneOptions& o) { o.nearest = 0; }, "nearest: must be at least 1"},
+             {[](SceneOptions& o) { o.noise_sigma_m = -1.0; }, "noise: must be in [0, 1000]"},
+             {[](SceneOptions& o) { o.noise_by_range = 1.5; }, "noise-by-range: must be in [0, 1]"},
+             {[](SceneOptions& o) { o.pose_noise_yaw_rad = kNan; }, "pose-noise: must be in [0, 1000]"},
+             {[](SceneOptions& o) { o.miss_rate = 1.0; }, "miss: must be in [0, 1)"},
+             {colored(1.5, 0.0), "color-error: must be in [0, 1]"},
+             {colored(0.0, -0.5), "color-unknown: must be in [0, 1]"},
+             {[](SceneOptions& o) { o.color_error_rate = 0.1; }, "color-error: needs scenes with colour"},
+             {[](SceneOptions& o) { o.color_unknown_rate = 0.1; }, "color-unknown: needs scenes with colour"},
+             {[](SceneOptions& o) { o.threads = 0; }, "threads: must be in [1, 1024]"},
+             {[](SceneOptions& o) { o.conditions = {"rain"}; },
+              "condition: 'rain' is not one of paper, car, harsh"},
+             {[](SceneOptions& o) {
+                  o.conditions = {"car", "car"};
+              },
+              "condition: car is there twice"}}) {
         SceneOptions wanted = options({0.0}, {30.0});
         change(wanted);
-        return refusal([&] { validate(wanted); });
-    };
-    static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(error([](SceneOptions&) {}), "accepted");
-    EXPECT_EQ(error([](SceneOptions& o) { o.false_positive_rates = {}; }),
-              "fp: must hold at least one value");
-    EXPECT_EQ(error([](SceneOptions& o) { o.false_positive_rates = {1.0}; }), "fp: must be in [0, 0.99]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.false_positive_rates = {kNan}; }), "fp: must be in [0, 0.99]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.false_positive_rates = {0.3, 0.3}; }), "fp: 0.3 is there twice");
-    EXPECT_EQ(error([](SceneOptions& o) { o.ranges_m = {0.0}; }), "range: must be in [0.1, 1000]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.every_m = 0.0; }), "every: must be in [0.01, 1000]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.nearest = 0; }), "nearest: must be at least 1");
-    EXPECT_EQ(error([](SceneOptions& o) { o.noise_sigma_m = -1.0; }), "noise: must be in [0, 1000]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.noise_by_range = 1.5; }), "noise-by-range: must be in [0, 1]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.pose_noise_yaw_rad = kNan; }),
-              "pose-noise: must be in [0, 1000]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.miss_rate = 1.0; }), "miss: must be in [0, 1)");
-    EXPECT_EQ(error([](SceneOptions& o) {
-                  o.with_color = true;
-                  o.color_error_rate = 1.5;
-              }),
-              "color-error: must be in [0, 1]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.color_error_rate = 0.1; }),
-              "color-error: needs scenes with colour");
-    EXPECT_EQ(error([](SceneOptions& o) { o.color_unknown_rate = 0.1; }),
-              "color-unknown: needs scenes with colour");
-    EXPECT_EQ(error([](SceneOptions& o) {
-                  o.with_color = true;
-                  o.color_unknown_rate = -0.5;
-              }),
-              "color-unknown: must be in [0, 1]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.threads = 0; }), "threads: must be in [1, 1024]");
-    EXPECT_EQ(error([](SceneOptions& o) { o.conditions = {"rain"}; }),
-              "condition: 'rain' is not one of paper, car, harsh");
-    EXPECT_EQ(error([](SceneOptions& o) { o.conditions = {"car", "car"}; }), "condition: car is there twice");
+        EXPECT_EQ(refusal([&] { validate(wanted); }), message);
+    }
 
     const SceneOptions good = options({0.5}, {30.0});
     EXPECT_THROW(generate(straight(), {{{kNan, 0.0}, 0.0}}, good), InvalidInput);

@@ -1,35 +1,36 @@
 #include "evaluation/world/shortest_tour.hpp"
 
 #include "tests/support/boundary_checks.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <numeric>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <gtest/gtest.h>
 
 namespace conelane {
 namespace {
 
+std::vector<double> random_angles(std::uint64_t seed, double most_rad) {
+    boost::random::mt19937_64 generator(seed);
+    boost::random::uniform_real_distribution<double> any(0.0, most_rad);
+    std::vector<double> angles(40);
+    for (double& angle : angles) angle = any(generator);
+    return angles;
+}
+
+std::vector<Point> on_ellipse(const std::vector<double>& angles, double across_m) {
+    std::vector<Point> points;
+    for (const double angle : angles) points.emplace_back(30 * std::cos(angle), across_m * std::sin(angle));
+    return points;
+}
+
 TEST(ShortestTour, FindsTheOrderOfPointsOnAConvexCurve) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
-        boost::random::mt19937_64 generator(seed);
-        std::vector<double> angles;
-        for (int k = 0; k < 40; ++k) {
-            angles.push_back(boost::random::uniform_real_distribution<double>(0.0, 6.28)(generator));
-        }
-        std::vector<Point> points;
-        for (const double angle : angles) points.emplace_back(30 * std::cos(angle), 12 * std::sin(angle));
-        std::vector<Point> convex;
+        std::vector<double> angles = random_angles(seed, 6.28);
+        const std::vector<Point> points = on_ellipse(angles, 12);
         std::ranges::sort(angles);
-        for (const double angle : angles) convex.emplace_back(30 * std::cos(angle), 12 * std::sin(angle));
         std::vector<Point> toured;
         for (const std::size_t index : shortest_tour(points)) toured.push_back(points[index]);
-        EXPECT_NEAR(polyline_length_m(toured, true), polyline_length_m(convex, true), 1e-9);
+        EXPECT_NEAR(polyline_length_m(toured, true), polyline_length_m(on_ellipse(angles, 12), true), 1e-9);
     }
 }
 
@@ -57,13 +58,8 @@ TEST(ShortestTour, VisitsEveryPointOnceAndDoesNotCrossItself) {
 TEST(ShortestPath, FindsTheOrderOfPointsAlongABow) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
-        boost::random::mt19937_64 generator(seed);
-        std::vector<double> angles;
-        for (int k = 0; k < 40; ++k) {
-            angles.push_back(boost::random::uniform_real_distribution<double>(0.0, 4.5)(generator));
-        }
-        std::vector<Point> points;
-        for (const double angle : angles) points.emplace_back(30 * std::cos(angle), 30 * std::sin(angle));
+        const std::vector<double> angles = random_angles(seed, 4.5);
+        const std::vector<Point> points = on_ellipse(angles, 30);
         std::vector<double> ordered;
         for (const std::size_t index : shortest_path(points)) ordered.push_back(angles[index]);
         if (ordered.front() > ordered.back()) std::ranges::reverse(ordered);

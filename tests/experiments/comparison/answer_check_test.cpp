@@ -79,13 +79,14 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
 TEST(CheckAnswer, ChecksALaneByTheDNearThatItNames) {
     const AnnotatedScene scene = straight_scene();
     LaneRecord record = answer_on(scene);
-    record.answer.other_d_near_m = RldParameters{}.d_near;
+    SolvedLane& solved = record.answer.solved.emplace(
+        SolvedLane{.lane = record.answer.lane, .d_near_m = RldParameters{}.d_near});
     expect_rejected(record, scene);  // optimal for another program
     record.answer.optimality.reset();
     LaneRecord same = record;
     check_answer(same, scene.scene, {.d_near = 0.5});
     EXPECT_TRUE(same.checked) << same.answer.message;
-    record.answer.other_d_near_m = 0.5;  // no cone is so near
+    solved.d_near_m = 0.5;  // no cone is so near
     expect_rejected(record, scene);
 }
 
@@ -95,23 +96,23 @@ TEST(CheckAnswer, ChecksTheUncutLaneOfALaneWithContext) {
     LaneRecord right{scene.scene.id, "rld-context",
                      make_detector(detector)->detect(scene.scene, tests::kNoTimeLimit), 1.0,
                      cone_set(detector, {}).nearest};
-    ASSERT_TRUE(right.answer.uncut);
+    ASSERT_TRUE(right.answer.solved);
     LaneRecord record = right;
     check_answer(record, cone_set(detector, {}).seen(scene.scene), {});
     EXPECT_TRUE(record.checked) << record.answer.message;
 
     LaneRecord longer = right;  // not the result of the cut
-    longer.answer.lane = longer.answer.uncut->lane;
+    longer.answer.lane = longer.answer.solved->lane;
     expect_rejected(longer, scene);
 
     LaneRecord cheaper = right;
-    cheaper.answer.uncut->optimality->objective -= 1.0;
-    cheaper.answer.uncut->optimality->bound -= 1.0;
+    cheaper.answer.solved->optimality->objective -= 1.0;
+    cheaper.answer.solved->optimality->bound -= 1.0;
     expect_rejected(cheaper, scene);
 
     LaneRecord leaping = right;  // a cone is left out beyond the cut, so the cut gives the same lane
-    leaping.answer.uncut->lane.left.erase(leaping.answer.uncut->lane.left.begin() + 8);
-    leaping.answer.uncut->optimality.reset();
+    leaping.answer.solved->lane.left.erase(leaping.answer.solved->lane.left.begin() + 8);
+    leaping.answer.solved->optimality.reset();
     expect_rejected(leaping, scene);
 }
 

@@ -7,9 +7,7 @@
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/cross_check/case_file.hpp"
 #include "experiments/cross_check/judge.hpp"
-#include "experiments/cross_check/shrink.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -45,10 +43,11 @@ using Falsify = std::function<void(RldReport&, const Scene&, double time_limit_m
 /// path-pair, and a solver that changes path-pair's answers.
 std::vector<CheckedSolver> with_a_wrong_one(const Falsify& falsify) {
     return {{"right", [](const Scene& scene, const RldParameters& parameters,
-                         double) { return by_path_pair(scene, parameters); }},
-            {"wrong", [falsify](const Scene& scene, const RldParameters& parameters, double limit_ms) {
+                         const SolveArguments&) { return by_path_pair(scene, parameters); }},
+            {"wrong",
+             [falsify](const Scene& scene, const RldParameters& parameters, const SolveArguments& arguments) {
                  RldReport report = by_path_pair(scene, parameters);
-                 falsify(report, scene, limit_ms);
+                 falsify(report, scene, arguments.limits.time_limit_ms);
                  return report;
              }}};
 }
@@ -71,18 +70,14 @@ TEST(CrossCheckJudge, RightAnswersAgree) {
 TEST(CrossCheckJudge, TheAnswerOfThePreviousFrameIsAStart) {
     const LaneGraph of_previous_frame{{{0, 2}, {3, 5}}};
     std::vector<LaneGraph> starts;
-    const CheckedSolver solver{
-        "right",
-        [&](const Scene& scene, const RldParameters& parameters, double) {
-            RldReport report = by_path_pair(scene, parameters);
-            if (scene.pose.position.x() < -0.5) report.lane_graph = of_previous_frame;
-            return report;
-        },
-        {},
-        [&](const Scene& scene, const RldParameters& parameters, double, const LaneGraph& start) {
-            starts.push_back(start);
-            return by_path_pair(scene, parameters);
-        }};
+    const auto solve = [&](const Scene& scene, const RldParameters& parameters,
+                           const SolveArguments& arguments) {
+        if (arguments.start != nullptr) starts.push_back(*arguments.start);
+        RldReport report = by_path_pair(scene, parameters);
+        if (scene.pose.position.x() < -0.5) report.lane_graph = of_previous_frame;
+        return report;
+    };
+    const CheckedSolver solver{"right", solve, {}, true};
     const CrossCheckVerdict verdict = judge(straight_case(), std::array{solver}, 1000.0);
     EXPECT_THAT(verdict.findings, testing::IsEmpty());
     EXPECT_TRUE(std::ranges::any_of(
@@ -186,7 +181,7 @@ TEST(Shrinking, KeepsTheConesAndTheParametersThatMatter) {
     });
     ASSERT_EQ(shrunk.scene.cones.size(), 2U);
     EXPECT_EQ(shrunk.parameters.d_near, 7.5);
-    EXPECT_EQ(shrunk.parameters.w_v, 0.0);
+    EXPECT_EQ(shrunk.parameters.facing_weight, 0.0);
     EXPECT_FALSE(shrunk.parameters.forbid_crossing);
     EXPECT_LT(asked, 200);
 }
@@ -308,7 +303,7 @@ TEST_F(CrossCheckRun, AnotherRunInTheFolderIsRefusedAndStays) {
 /// It ignores cone 3 and proves the optimum of the rest. If the cone matters, the two solvers differ.
 std::vector<CheckedSolver> with_a_blind_one(Formulation /*formulation*/) {
     std::vector<CheckedSolver> both = with_a_wrong_one([](RldReport&, const Scene&, double) {});
-    both[1].solve = [](const Scene& scene, const RldParameters& parameters, double) {
+    both[1].solve = [](const Scene& scene, const RldParameters& parameters, const SolveArguments&) {
         Scene seen = scene;
         std::erase_if(seen.cones, [](const Cone& cone) { return cone.id == 3; });
         RldReport report = by_path_pair(seen, parameters);
@@ -356,12 +351,13 @@ TEST_F(CrossCheckRun, AnotherDifferenceDoesNotReplaceTheOneThatWasFound) {
     CrossCheckOptions some = options(40);
     some.make_solvers = [](Formulation formulation) {
         std::vector<CheckedSolver> all = with_a_blind_one(formulation);
-        all.push_back({"weak", [](const Scene& scene, const RldParameters& parameters, double) {
-                           if (scene.cones.size() >= 5) return by_path_pair(scene, parameters);
-                           RldReport report;
-                           report.message = "too few cones";
-                           return report;
-                       }});
+        all.push_back(
+            {"weak", [](const Scene& scene, const RldParameters& parameters, const SolveArguments&) {
+                 if (scene.cones.size() >= 5) return by_path_pair(scene, parameters);
+                 RldReport report;
+                 report.message = "too few cones";
+                 return report;
+             }});
         return all;
     };
     (void)cross_check(some, path("cases"));

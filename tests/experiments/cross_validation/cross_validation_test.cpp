@@ -1,11 +1,11 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "conelane/learned_costs.hpp"
-#include "evaluation/formats/file_hash.hpp"
-#include "evaluation/formats/front_weights_file.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
 #include "tests/support/program_fixture.hpp"
@@ -59,6 +59,8 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 find_method(detector).learned_maker(path("cv/folds/" + fold), options);
             EXPECT_EQ(maker(scenes[i].track)->answer(scenes[i].scene).answer.lane, lanes[i].answer.lane)
                 << scenes[i].scene.id;
+            EXPECT_EQ(lanes[i].answer.status == LaneStatus::found, lanes[i].answer.trusted_m.has_value())
+                << "checked to be drivable, as in a comparison";
         }
     }
 }

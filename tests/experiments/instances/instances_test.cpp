@@ -6,7 +6,6 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/slowness.hpp"
-#include "tests/support/solver_cases.hpp"
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"
 
@@ -119,28 +118,6 @@ TEST_F(Instances, NoBoundOfAHardSceneIsAboveTheBestKnownLaneGraph) {
         ++compared;
     }
     EXPECT_EQ(compared, 4);
-}
-
-TEST_F(Instances, EverySolverFindsTheStoredOptima) {
-    std::map<std::string, Known> stored = read_solu(kStored / "conelane.solu");
-    InstanceOptions options = slice_of_stored();
-    int compared = 0;
-    for (const InstanceScene& set : instance_scenes(options)) {
-        for (const tests::SolverCase& solver_case : tests::solver_cases()) {
-            const RldSolverEntry& entry = *solver_case.entry;
-            if (!entry.has(SolverTrait::exact) || entry.max_cones.value_or(12) < 12) continue;
-            SCOPED_TRACE(set.name + " " + std::string(entry.name));
-            if (solver_case.formulation == Formulation::paper && !entry.has(SolverTrait::suits_paper))
-                continue;  // it takes seconds
-            const auto solver = entry.make(solver_case.formulation);
-            const RldReport report = solve_scene(*solver, set.scene, RldParameters{}, {}).report;
-            ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
-            const std::string name = set.name + std::string(ending_of(solver_case.formulation));
-            EXPECT_NEAR(*report.objective, stored[name].value, kSameObjective);
-            ++compared;
-        }
-    }
-    EXPECT_GE(compared, 36);
 }
 
 /// Four gates ahead of the car, and far to the left ten cones in a ring.
@@ -269,25 +246,6 @@ TEST_F(Instances, AClassIsAboutBothEngines) {
     EXPECT_EQ(with(1.0, std::nullopt), InstanceClass::hard);
     EXPECT_EQ(with(std::nullopt, 1.0), InstanceClass::hard);
     EXPECT_EQ(with(std::nullopt, std::nullopt), InstanceClass::open);
-}
-
-TEST_F(Instances, OfAnotherSolverHaveTheSameOptima) {
-    if (std::system("command -v cbc >/dev/null") != 0) GTEST_SKIP() << "there is no program cbc";
-    run_well("instances --tracks generated:circle --fp 0.5 --every 1000 --nearest 12 --out made");
-    const std::map<std::string, Known> known = read_solu(path("made") / "conelane.solu");
-    ASSERT_EQ(known.size(), 2u);
-    for (const auto& [name, optimum] : known) {
-        SCOPED_TRACE(name);
-        ASSERT_EQ(optimum.mark, "=opt=");
-        const std::string command = "cd " + (path("made")).string() + " && cbc " + name +
-                                    ".mps.gz solve solution by_cbc.txt >by_cbc.log 2>&1";
-        ASSERT_EQ(std::system(command.c_str()), 0);
-        std::ifstream in(path("made") / "by_cbc.txt");
-        std::string head;
-        std::getline(in, head);
-        ASSERT_THAT(head, HasSubstr("Optimal - objective value"));
-        EXPECT_NEAR(std::stod(head.substr(head.rfind(' '))), optimum.value, 1e-5) << "as cbc prints it";
-    }
 }
 
 TEST_F(Instances, BadOptionsAreRefused) {

@@ -1,6 +1,6 @@
 // `conelane race` as a user or a script calls it.
 
-#include "evaluation/formats/front_weights_file.hpp"
+#include "evaluation/formats/weights_file.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/program_fixture.hpp"

@@ -6,7 +6,6 @@
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/world/condition.hpp"
 #include "experiments/race/drivers.hpp"
-#include "experiments/race/vehicle.hpp"
 #include "tests/support/recorded_tracks.hpp"
 #include "tests/support/testing.hpp"
 
@@ -247,7 +246,7 @@ TEST(Race, ThroughAGapTheCarDepartsToo) {
         track.cones.push_back({static_cast<ConeId>(track.cones.size()), {x_m, y_m}});
     };
     for (const double x_m : {0.0, 5.0, 35.0, 60.0}) add(x_m, 2.0, track.left);
-    for (const auto& [x_m, y_m] : {std::pair{60.0, 40.0}, {0.0, 40.0}}) add(x_m, y_m, track.left);
+    for (const double x_m : {60.0, 0.0}) add(x_m, 40.0, track.left);
     for (const double x_m : {0.0, 20.0, 40.0, 64.0}) add(x_m, -2.0, track.right);
     for (const auto& [x_m, y_m] : {std::pair{64.0, 44.0}, {-4.0, 44.0}, {-4.0, -2.0}}) {
         add(x_m, y_m, track.right);
@@ -387,17 +386,11 @@ TEST(RaceFaults, WithoutOneFramesComeEachTenthOfASecond) {
     EXPECT_GT(std::ranges::min(seen.cones), 0U);
 }
 
-TEST(RaceFaults, LateFramesKeepTheirOrder) {
+TEST(RaceFaults, FramesComeLateOutOfOrderOrTwice) {
     EXPECT_TRUE(std::ranges::is_sorted(frames_of(RaceFault::late).times_s));
-}
-
-TEST(RaceFaults, FramesComeOutOfOrder) {
     EXPECT_FALSE(std::ranges::is_sorted(frames_of(RaceFault::order).times_s));
-}
-
-TEST(RaceFaults, FramesComeTwice) {
-    const std::vector<double> times_s = frames_of(RaceFault::twice).times_s;
-    EXPECT_NE(std::ranges::adjacent_find(times_s), times_s.end());
+    const std::vector<double> twice_s = frames_of(RaceFault::twice).times_s;
+    EXPECT_NE(std::ranges::adjacent_find(twice_s), twice_s.end());
 }
 
 TEST(RaceFaults, ForASecondNoConeIsSeen) {
@@ -431,78 +424,68 @@ TEST(RaceFaults, AnUnknownOneIsRefused) {
     EXPECT_THROW(static_cast<void>(race_fault("rain")), InvalidInput);
 }
 
-class Missions : public testing::TestWithParam<Mission> {};
+class Missions : public testing::TestWithParam<Mission> {
+  protected:
+    /// From a standstill, by exact positions.
+    [[nodiscard]] RaceResult drive(const Driver& driver) const {
+        RaceOptions options = options_of("paper");
+        options.with_stop = true;
+        return race(course_, options, driver);
+    }
+    /// By the true line, but for what `change` changes.
+    template <typename Change>
+    [[nodiscard]] RaceEnd end_of(const Change& change) const {
+        return drive([change, truth = truth_driver(course_, 1)](const Frame& frame) mutable {
+                   Drive drive = truth(frame);
+                   change(drive, frame);
+                   return drive;
+               })
+            .end;
+    }
+
+    const RaceCourse course_ = mission_course(GetParam());
+};
 
 TEST_P(Missions, TheTrueLineDrivesThemToAStop) {
-    const RaceCourse course = mission_course(GetParam());
     RaceOptions options = options_of("car");
     options.with_stop = true;
     options.start_error_m = 3.0;
     options.start_error_rad = 0.35;
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
         options.sight.seed = seed;
-        const RaceResult result = race(course, options, truth_driver(course, 1));
+        const RaceResult result = race(course_, options, truth_driver(course_, 1));
         EXPECT_EQ(to_string(result.end), "finished");
         ASSERT_TRUE(result.stop_said_m);
         EXPECT_GE(*result.stop_said_m, 0.0);
         EXPECT_LT(*result.stop_said_m, 5.0);
         ASSERT_TRUE(result.rest_m);
-        EXPECT_LT(*result.rest_m, course.rest_m);
+        EXPECT_LT(*result.rest_m, course_.rest_m);
     }
 }
 
-TEST_P(Missions, WhoStopsBeforeTheLineHasLost) {
-    const RaceCourse course = mission_course(GetParam());
-    RaceOptions options = options_of("paper");
-    options.with_stop = true;
-    const RaceResult result = race(course, options, [&](const Frame& frame) {
-        Drive drive = truth_driver(course, 1)(frame);
-        drive.stop = frame.time_s > 2.0;
-        return drive;
-    });
-    EXPECT_EQ(to_string(result.end), "stopped early");
-}
-
-TEST_P(Missions, WhoNeverStopsHasLost) {
-    const RaceCourse course = mission_course(GetParam());
-    RaceOptions options = options_of("paper");
-    options.with_stop = true;
-    const RaceResult result =
-        race(course, options, [truth = truth_driver(course, 1)](const Frame& frame) mutable {
-            Drive drive = truth(frame);
-            drive.stop = false;
-            return drive;
-        });
-    EXPECT_EQ(to_string(result.end), "not stopped");
+TEST_P(Missions, WhoStopsBeforeTheLineOrNeverHasLost) {
+    const RaceEnd early = end_of([](Drive& drive, const Frame& frame) { drive.stop = frame.time_s > 2.0; });
+    EXPECT_EQ(to_string(early), "stopped early");
+    EXPECT_EQ(to_string(end_of([](Drive& drive, const Frame&) { drive.stop = false; })), "not stopped");
 }
 
 TEST_P(Missions, WithoutAPathTheCarDoesNotStart) {
-    const RaceCourse course = mission_course(GetParam());
-    RaceOptions options = options_of("paper");
-    options.with_stop = true;
-    const RaceResult result = race(course, options, no_path);
+    const RaceResult result = drive(no_path);
     EXPECT_EQ(to_string(result.end), "halted");
     EXPECT_EQ(result.driven_m, 0.0);
 }
 
 TEST_P(Missions, APlannerThatTellsOtherPhasesHasLost) {
-    const RaceCourse course = mission_course(GetParam());
-    if (course.phases.empty()) GTEST_SKIP() << "a mission without phases";
-    RaceOptions options = options_of("paper");
-    options.with_stop = true;
-    const auto told = [&](std::vector<std::string_view> phases) {
+    if (course_.phases.empty()) GTEST_SKIP() << "a mission without phases";
+    const auto told = [&](const std::vector<std::string_view>& phases) {
         std::size_t frames = 0;
-        return race(course, options,
-                    [&, truth = truth_driver(course, 1)](const Frame& frame) mutable {
-                        Drive drive = truth(frame);
-                        drive.state = "following";
-                        drive.phase = phases[std::min(frames++, phases.size() - 1)];
-                        return drive;
-                    })
-            .end;
+        return end_of([&](Drive& drive, const Frame&) {
+            drive.state = "following";
+            drive.phase = phases[std::min(frames++, phases.size() - 1)];
+        });
     };
-    EXPECT_EQ(told(course.phases), RaceEnd::finished);
-    std::vector<std::string_view> swapped = course.phases;
+    EXPECT_EQ(told(course_.phases), RaceEnd::finished);
+    std::vector<std::string_view> swapped = course_.phases;
     std::swap(swapped[1], swapped[3]);
     EXPECT_EQ(told(swapped), RaceEnd::wrong_phases);
 }

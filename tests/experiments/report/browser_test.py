@@ -2,19 +2,18 @@
 methods off, sorts, filters, changes the theme. Fails on anything the page reports as an error. Exit code 77 without
 Chromium."""
 
-import html
 import json
 import os
 import re
-import subprocess
 import sys
 import tempfile
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "playground", "page"))
+from chromium import Chromium  # noqa: E402
+
 WATCH = """<script>
 const problems = [];
-addEventListener("error", (event) => problems.push(String(event.message)));
-addEventListener("unhandledrejection", (event) => problems.push(String(event.reason)));
-console.error = (...words) => problems.push(words.join(" "));
 // Every line that is drawn, with its dashes.
 const strokes = { lines: [], points: [] };
 const contexts = CanvasRenderingContext2D.prototype;
@@ -235,19 +234,6 @@ def with_uncertain_answers(text):
     return text[:data.start(2)] + json.dumps(scenes) + text[data.end(2):]
 
 
-def problems_at(chromium, page, width, folder):
-    done = subprocess.run(
-        [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-         "--disable-background-networking", "--disable-component-update", "--disable-sync",
-         f"--user-data-dir={os.path.join(folder, str(width))}", f"--window-size={width},900",
-         "--virtual-time-budget=20000", "--dump-dom", "file://" + page],
-        capture_output=True, text=True, check=False, timeout=120)
-    outcome = re.search(r'<pre id="outcome">(.*?)</pre>', done.stdout, flags=re.S)
-    if not outcome:
-        return [f"the browser gave no outcome, exit code {done.returncode}: {done.stderr[-2000:]}"]
-    return json.loads(html.unescape(outcome[1]))
-
-
 def main():
     if len(sys.argv) < 3 or not os.access(sys.argv[2], os.X_OK):
         print("skipped: there is no Chromium (Debian: apt-get install chromium)")
@@ -255,16 +241,19 @@ def main():
     page, chromium = sys.argv[1:3]
     with open(page, encoding="utf-8") as stream:
         text = with_uncertain_answers(stream.read())
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, Chromium(chromium) as browser:
         copy = os.path.join(folder, "page.html")
         with open(copy, "w", encoding="utf-8") as stream:
             stream.write(text.replace("<head>", "<head>" + WATCH, 1).replace("</body>", USE + "</body>", 1))
-        failed = False
+        problems = []
         for width in (1280, 500):
-            for problem in problems_at(chromium, copy, width, folder):
-                print(f"{width} px wide: {problem}")
-                failed = True
-    return 1 if failed else 0
+            browser.size(width, 900)
+            browser.open("file://" + copy)
+            outcome = browser.wait_for("document.getElementById('outcome')?.textContent")
+            browser.value("localStorage.clear()")  # the theme that was chosen
+            problems += [f"{width} px wide: {problem}" for problem in json.loads(outcome) + browser.problems]
+    print("\n".join(problems))
+    return 1 if problems else 0
 
 
 if __name__ == "__main__":

@@ -37,32 +37,20 @@ def contrast(one, other):
 
 
 class Colours(unittest.TestCase):
-    def test_methods_can_be_told_apart(self):
+    def test_methods_and_sides_can_be_told_apart(self):
         with open(STYLE, encoding="utf-8") as stream:
             blocks = [dict(re.findall(r"--(\w+): (#[0-9a-f]{6})", block))
                       for block in re.findall(r"\{([^{}]*--m0[^{}]*)\}", stream.read())]
         self.assertEqual(len(blocks), 3)  # light, dark by choice, dark by the system
         self.assertEqual(blocks[1], blocks[2])
         for block in blocks[:2]:
-            methods = [block[f"m{i}"] for i in range(8)]
-            for color in methods:
-                self.assertGreaterEqual(contrast(color, block["surface"]), LEAST_CONTRAST, color)
-            for vision, matrix in VISION.items():
-                seen = {color: lab(matrix @ linear(color)) for color in methods}
-                for one, other in itertools.combinations(methods, 2):
-                    self.assertGreater(np.linalg.norm(seen[one] - seen[other]), LEAST_DISTANCE, (vision, one, other))
-
-
-    def test_left_and_right_can_be_told_apart(self):
-        with open(STYLE, encoding="utf-8") as stream:
-            blocks = [dict(re.findall(r"--(\w+): (#[0-9a-f]{6})", block))
-                      for block in re.findall(r"\{([^{}]*--m0[^{}]*)\}", stream.read())]
-        for block in blocks:
-            for side in ("left", "right"):
-                self.assertGreaterEqual(contrast(block[side], block["raised"]), LEAST_CONTRAST, side)
-            for vision, matrix in VISION.items():
-                seen = [lab(matrix @ linear(block[side])) for side in ("left", "right")]
-                self.assertGreater(np.linalg.norm(seen[0] - seen[1]), LEAST_DISTANCE, vision)
+            for ground, names in (("surface", [f"m{i}" for i in range(8)]), ("raised", ["left", "right"])):
+                for name in names:
+                    self.assertGreaterEqual(contrast(block[name], block[ground]), LEAST_CONTRAST, name)
+                for vision, matrix in VISION.items():
+                    for one, other in itertools.combinations(names, 2):
+                        distance = np.linalg.norm(lab(matrix @ linear(block[one])) - lab(matrix @ linear(block[other])))
+                        self.assertGreater(distance, LEAST_DISTANCE, (vision, one, other))
 
 
 if __name__ == "__main__":

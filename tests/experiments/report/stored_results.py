@@ -1,11 +1,10 @@
 """write_results(FOLDER, ...): results as `conelane compare` stores them, of made-up scores on straight courses, to see
-what the report makes of them. As a program: stored_results.py FOLDER SCENES METHODS, for its time and memory."""
+what the report makes of them."""
 
 import json
 import math
 import os
 import random
-import sys
 from dataclasses import dataclass, field
 
 STEP_M = 4.0  # from cone to cone
@@ -184,17 +183,3 @@ def write_results(folder, setup):
                         ("run.json", {"commit": "made-up", "methods": [{"name": name} for name in setup.methods]})):
         with open(path(name), "w", encoding="utf-8") as stream:
             json.dump(value, stream)
-
-
-def main():
-    folder, scenes, methods = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-    tracks = tuple(f"track_{i}" for i in range(45))
-    setup = Setup(tracks=tracks, runs=("run_1", "run_2", "run_3"), rates=(0.0, 0.1, 0.3, 0.5), ranges=(30.0, 50.0),
-                  every_m=1.1, methods=tuple(f"method-{i}" for i in range(methods)))
-    laps = len(setup.conditions) * (len(tracks) + 3) * len(setup.rates) * len(setup.ranges)
-    setup.poses = max(1, scenes // laps)
-    write_results(folder, setup)
-
-
-if __name__ == "__main__":
-    main()

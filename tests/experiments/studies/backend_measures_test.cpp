@@ -1,12 +1,10 @@
-// The evaluation of rows in the study of backends: refuted claims, permutations, measures, features, ASlib.
+// The evaluation of rows in the study of backends: refuted claims, permutations, measures, ASlib.
 
 #include "experiments/studies/backend_measures.hpp"
 
 #include "evaluation/formats/scene_set.hpp"
 #include "experiments/studies/aslib.hpp"
-#include "experiments/studies/features.hpp"
-#include "experiments/studies/peak_memory.hpp"
-#include "experiments/studies/reference_problem.hpp"
+#include "experiments/studies/machine.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/straight_scene.hpp"
 #include "tests/support/testing.hpp"
@@ -19,9 +17,9 @@ using testing::HasSubstr;
 
 constexpr double kLimit_ms = 100.0;
 
-BackendRow row_of(const AnnotatedScene& scene, const std::string& solver, SolveStatus status,
-                  std::optional<double> objective, double latency_ms, std::size_t permutation = 0) {
-    BackendRow row;
+SolveRow row_of(const AnnotatedScene& scene, const std::string& solver, SolveStatus status,
+                std::optional<double> objective, double latency_ms, std::size_t permutation = 0) {
+    SolveRow row;
     row.scene = &scene;
     row.cones = row.size = 6;
     row.backend = Backend{solver};
@@ -33,19 +31,27 @@ BackendRow row_of(const AnnotatedScene& scene, const std::string& solver, SolveS
     return row;
 }
 
+/// The measures of this kind.
+std::vector<Json> rows_of_kind(const std::string& kind, const std::vector<SolveRow>& rows) {
+    StudyResult result;
+    add_measures(result, {rows, {}}, kLimit_ms);
+    std::erase_if(result.rows, [&](const Json& row) { return row.at("row") != kind; });
+    return result.rows;
+}
+
 TEST(RefutedClaims, AreThoseThatACheckedLaneGraphContradicts) {
     const std::vector<AnnotatedScene> scenes(2, straight_scene());
-    std::vector<BackendRow> rows{row_of(scenes[0], "a", SolveStatus::optimal, -5.0, 1.0),
-                                 row_of(scenes[0], "b", SolveStatus::optimal, -5.0 + 4e-6, 1.0),
-                                 row_of(scenes[0], "c", SolveStatus::optimal, -4.9, 1.0),
-                                 row_of(scenes[0], "d", SolveStatus::infeasible, {}, 1.0),
-                                 row_of(scenes[0], "e", SolveStatus::feasible, -4.0, 1.0),
-                                 row_of(scenes[0], "f", SolveStatus::error, -9.0, 1.0),
-                                 row_of(scenes[1], "a", SolveStatus::infeasible, {}, 1.0)};
+    std::vector<SolveRow> rows{row_of(scenes[0], "a", SolveStatus::optimal, -5.0, 1.0),
+                               row_of(scenes[0], "b", SolveStatus::optimal, -5.0 + 4e-6, 1.0),
+                               row_of(scenes[0], "c", SolveStatus::optimal, -4.9, 1.0),
+                               row_of(scenes[0], "d", SolveStatus::infeasible, {}, 1.0),
+                               row_of(scenes[0], "e", SolveStatus::feasible, -4.0, 1.0),
+                               row_of(scenes[0], "f", SolveStatus::error, -9.0, 1.0),
+                               row_of(scenes[1], "a", SolveStatus::infeasible, {}, 1.0)};
     rows[4].bound = -4.5;
     mark_refuted_claims(rows);
     std::string refuted;
-    for (const BackendRow& row : rows) refuted += row.refuted ? row.backend.solver : "-";
+    for (const SolveRow& row : rows) refuted += row.refuted ? row.backend.solver : "-";
     EXPECT_EQ(refuted, "--cde--");
     EXPECT_THAT(rows[2].message, HasSubstr("claims the optimum -4.9 where a has a lane graph of -5"));
     EXPECT_THAT(rows[3].message, HasSubstr("no lane graph"));
@@ -55,31 +61,24 @@ TEST(RefutedClaims, AreThoseThatACheckedLaneGraphContradicts) {
 
 TEST(RefutedClaims, AndErrorsCountInEveryOrder) {
     const std::vector<AnnotatedScene> scenes(1, straight_scene());
-    std::vector<BackendRow> rows{row_of(scenes[0], "a", SolveStatus::optimal, -5.0, 1.0),
-                                 row_of(scenes[0], "b", SolveStatus::optimal, -5.0, 1.0),
-                                 row_of(scenes[0], "b", SolveStatus::optimal, -4.0, 1.0, 1),
-                                 row_of(scenes[0], "b", SolveStatus::error, {}, 1.0, 2)};
+    std::vector<SolveRow> rows{row_of(scenes[0], "a", SolveStatus::optimal, -5.0, 1.0),
+                               row_of(scenes[0], "b", SolveStatus::optimal, -5.0, 1.0),
+                               row_of(scenes[0], "b", SolveStatus::optimal, -4.0, 1.0, 1),
+                               row_of(scenes[0], "b", SolveStatus::error, {}, 1.0, 2)};
     mark_refuted_claims(rows);
-    std::istringstream table(backend_table(rows));
-    std::vector<std::string> words(8);
-    while (words[1] != "b" && std::getline(table, words[0])) {
-        std::istringstream line(words[0]);
-        for (std::string& word : words) line >> word;
-    }
-    // Size and backend; scenes, optimal, infeasible, unproven, errors, refuted.
-    EXPECT_THAT(words, ElementsAre("6", "b", "1", "1", "0", "0", "1", "1"));
-    const std::vector<BackendSummary> summaries = measures_of(rows, kLimit_ms).summaries;
+    EXPECT_THAT(errors_among(rows).lines(), ElementsAre(HasSubstr("b n=6: 2 of 3 answers")));
+    const std::vector<Json> summaries = rows_of_kind("summary", rows);
     ASSERT_EQ(summaries.size(), 2U);
-    EXPECT_EQ(summaries[1].runs, 1U) << "the other backend has no other orders";
-    EXPECT_EQ(summaries[1].refuted, 1U);
-    EXPECT_EQ(summaries[1].errors, 2U);
+    EXPECT_EQ(summaries[1]["runs"], 1U) << "the other backend has no other orders";
+    EXPECT_EQ(summaries[1]["refuted"], 1U);
+    EXPECT_EQ(summaries[1]["errors"], 2U);
 }
 
 /// Two backends on two scenes in two orders; "b" fails once and is refuted once.
 TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     const std::vector<AnnotatedScene> scenes(2, straight_scene());
     using Status = SolveStatus;
-    std::vector<BackendRow> rows;
+    std::vector<SolveRow> rows;
     for (const std::size_t order : {0, 1}) {
         const double more = 2.0 * static_cast<double>(order);
         rows.push_back(row_of(scenes[0], "a", Status::optimal, -5.0, 2.0 + more, order));
@@ -91,43 +90,44 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     rows.push_back(row_of(scenes[1], "a", Status::optimal, -4.0, 1.0, 2));    // "b" has no third order
     rows[0].steps = {{1.0, -2.5, -10.0}, {2.0, -5.0, -5.0}};
     mark_refuted_claims(rows);
-    const BackendMeasures measures = measures_of(rows, kLimit_ms);
-    ASSERT_EQ(measures.summaries.size(), 2U);
-    const BackendSummary& a = measures.summaries[0];
-    const BackendSummary& b = measures.summaries[1];
-    EXPECT_EQ(a.runs, 4U);
-    EXPECT_EQ(a.scenes, 2U);
-    EXPECT_EQ(a.solved, 4U);
-    EXPECT_EQ(b.solved, 2U);
-    EXPECT_EQ(b.errors, 1U);
-    EXPECT_EQ(b.refuted, 1U);
-    EXPECT_NEAR(a.geometric_ms, std::pow(3.0 * 5.0 * 5.0 * 5.0, 0.25) - 1.0, 1e-9);
-    EXPECT_NEAR(b.geometric_ms, std::pow(2.0 * 2.0 * 101.0 * 101.0, 0.25) - 1.0, 1e-9);
-    EXPECT_DOUBLE_EQ(b.par1_ms, (1.0 + 1.0 + 100.0 + 100.0) / 4.0);
-    EXPECT_DOUBLE_EQ(b.par2_ms, (1.0 + 1.0 + 200.0 + 200.0) / 4.0);
-    EXPECT_DOUBLE_EQ(b.par10_ms, (1.0 + 1.0 + 1000.0 + 1000.0) / 4.0);
-    EXPECT_EQ(a.common, 2U);
-    EXPECT_NEAR(*a.common_geometric_ms, std::sqrt(3.0 * 5.0) - 1.0, 1e-9);
-    EXPECT_EQ(a.won, 2U);
-    EXPECT_EQ(b.won, 2U);
+    const std::vector<Json> summaries = rows_of_kind("summary", rows);
+    ASSERT_EQ(summaries.size(), 2U);
+    const Json &a = summaries[0], &b = summaries[1];
+    EXPECT_EQ(a.at("runs"), 4U);
+    EXPECT_EQ(a.at("scenes"), 2U);
+    EXPECT_EQ(a.at("solved"), 4U);
+    EXPECT_EQ(b.at("solved"), 2U);
+    EXPECT_EQ(b.at("errors"), 1U);
+    EXPECT_EQ(b.at("refuted"), 1U);
+    EXPECT_NEAR(a.at("geometric_ms"), std::pow(3.0 * 5.0 * 5.0 * 5.0, 0.25) - 1.0, 1e-9);
+    EXPECT_NEAR(b.at("geometric_ms"), std::pow(2.0 * 2.0 * 101.0 * 101.0, 0.25) - 1.0, 1e-9);
+    EXPECT_DOUBLE_EQ(b.at("par1_ms"), (1.0 + 1.0 + 100.0 + 100.0) / 4.0);
+    EXPECT_DOUBLE_EQ(b.at("par2_ms"), (1.0 + 1.0 + 200.0 + 200.0) / 4.0);
+    EXPECT_DOUBLE_EQ(b.at("par10_ms"), (1.0 + 1.0 + 1000.0 + 1000.0) / 4.0);
+    EXPECT_EQ(a.at("common"), 2U);
+    EXPECT_NEAR(a.at("common_geometric_ms"), std::sqrt(3.0 * 5.0) - 1.0, 1e-9);
+    EXPECT_EQ(a.at("won"), 2U);
+    EXPECT_EQ(b.at("won"), 2U);
     // Scene 0: 2 and 4 ms; scene 1: 4, 4 and 1 ms.
-    EXPECT_NEAR(*a.variability, (std::sqrt(2.0) / 3.0 + std::sqrt(3.0) / 3.0) / 2.0, 1e-9);
-    EXPECT_EQ(a.integrals, 1U);
-    EXPECT_DOUBLE_EQ(*a.primal_integral_ms, 1.0 + 0.5);
-    EXPECT_DOUBLE_EQ(*a.dual_integral_ms, 1.0 + 0.5);
-    EXPECT_FALSE(b.primal_integral_ms);
-    EXPECT_DOUBLE_EQ(a.profile.front(), 0.5);
-    EXPECT_DOUBLE_EQ(a.profile.back(), 1.0);
-    ASSERT_EQ(measures.pairs.size(), 1U);
-    EXPECT_EQ(measures.pairs[0].scenes, 2U);
-    EXPECT_NEAR(measures.pairs[0].ratio, std::pow(2.0 * 4.0 * 4.0 * 4.0 / (100.0 * 100.0), 0.25), 1e-9);
-    ASSERT_EQ(measures.selections.size(), 1U);
-    EXPECT_EQ(measures.selections[0].single_best, "a");
-    EXPECT_DOUBLE_EQ(measures.selections[0].virtual_par10_ms, (1.0 + 1.0 + 4.0 + 4.0) / 4.0);
-    EXPECT_THAT(measures_table(measures, {}), HasSubstr("PAR10"));
-    ASSERT_FALSE(measures.gaps.empty());
-    EXPECT_EQ(measures.gaps.front().mean_primal_gap, 1.0);
-    EXPECT_EQ(measures.gaps.back().mean_primal_gap, 0.0);
+    EXPECT_NEAR(a.at("variability"), (std::sqrt(2.0) / 3.0 + std::sqrt(3.0) / 3.0) / 2.0, 1e-9);
+    EXPECT_EQ(a.at("integrals"), 1U);
+    EXPECT_DOUBLE_EQ(a.at("primal_integral_ms"), 1.0 + 0.5);
+    EXPECT_DOUBLE_EQ(a.at("dual_integral_ms"), 1.0 + 0.5);
+    EXPECT_FALSE(b.contains("primal_integral_ms"));
+    EXPECT_DOUBLE_EQ(a.at("profile").front(), 0.5);
+    EXPECT_DOUBLE_EQ(a.at("profile").back(), 1.0);
+    const std::vector<Json> pairs = rows_of_kind("pair", rows);
+    ASSERT_EQ(pairs.size(), 1U);
+    EXPECT_EQ(pairs[0].at("scenes"), 2U);
+    EXPECT_NEAR(pairs[0].at("ratio"), std::pow(2.0 * 4.0 * 4.0 * 4.0 / (100.0 * 100.0), 0.25), 1e-9);
+    const std::vector<Json> selections = rows_of_kind("selection", rows);
+    ASSERT_EQ(selections.size(), 1U);
+    EXPECT_EQ(selections[0].at("single_best"), "a");
+    EXPECT_DOUBLE_EQ(selections[0].at("virtual_par10_ms"), (1.0 + 1.0 + 4.0 + 4.0) / 4.0);
+    const std::vector<Json> gaps = rows_of_kind("gap", rows);
+    ASSERT_FALSE(gaps.empty());
+    EXPECT_EQ(gaps.front().at("mean_primal_gap"), 1.0);
+    EXPECT_EQ(gaps.back().at("mean_primal_gap"), 0.0);
 }
 
 SceneSet some_scenes() {
@@ -141,21 +141,19 @@ SceneSet some_scenes() {
 /// Every order has the optimum of the original scene, for every solver.
 TEST(Permutations, DoNotChangeAnOptimum) {
     const SceneSet set = some_scenes();
-    BackendOptions options;
-    options.sizes = {10};
+    SolveOptions options{.sizes = {10}, .time_limit_ms = 60'000.0, .with_machine = true};
     options.permutations = 2;
     options.gap_limits_ms = {0.1, 1.0};
-    options.time_limit_ms = 60'000.0;
     options.backends = {backend_of("path-pair"), backend_of("cbc"), backend_of("cbc-main"),
                         backend_of("clp-bb/paper")};
-    const BackendResults results = backend_results(set.scenes, options);
+    SolveResults results = solve_scenes(set.scenes, options);
+    mark_refuted_claims(results.rows);
     std::map<const AnnotatedScene*, double> optimum;
     std::map<std::size_t, std::size_t> orders;
-    for (const BackendRow& row : results.rows) {
+    for (const SolveRow& row : results.rows) {
         EXPECT_FALSE(row.refuted) << row.message;
         ++orders[row.permutation];
-        ASSERT_TRUE(row.status == SolveStatus::optimal || row.status == SolveStatus::infeasible)
-            << row.message;
+        ASSERT_TRUE(row.is_proven()) << row.message;
         const double value = row.objective.value_or(1e9);
         EXPECT_NEAR(optimum.try_emplace(row.scene, value).first->second, value, 1e-6);
         EXPECT_EQ(row.steps.empty(), row.permutation > 0);
@@ -163,7 +161,7 @@ TEST(Permutations, DoNotChangeAnOptimum) {
     EXPECT_EQ(orders.size(), 3U);
     EXPECT_EQ(orders[1], orders[0]);
     ASSERT_EQ(results.blocks.size(), 4U);
-    for (const BackendBlock& block : results.blocks) {
+    for (const SolveBlock& block : results.blocks) {
         EXPECT_GT(block.reference_ms, 0.0);
         EXPECT_FALSE(block.version.empty());
     }
@@ -173,11 +171,11 @@ class AslibScenario : public FileTest {};
 
 TEST_F(AslibScenario, HasEveryRunAndInstance) {
     const SceneSet set = some_scenes();
-    BackendOptions options;
+    SolveOptions options;
     options.sizes = {8};
     options.permutations = 1;
     options.backends = {backend_of("path-pair"), backend_of("clp-bb")};
-    const std::vector<BackendRow> rows = backend_rows(set.scenes, options);
+    const std::vector<SolveRow> rows = solve_scenes(set.scenes, options).rows;
     write_aslib_scenario(path("aslib"), rows, options);
     const auto data_lines = [&](const std::string& name) {
         const std::string text = text_of(path("aslib") / name);
@@ -194,28 +192,6 @@ TEST_F(AslibScenario, HasEveryRunAndInstance) {
         EXPECT_EQ(data_lines(name), instances) << name;
     EXPECT_THAT(text_of(path("aslib") / "description.txt"), HasSubstr("'clp-bb/tight':"));
     EXPECT_THAT(text_of(path("aslib") / "algorithm_runs.arff"), HasSubstr(" n=8',2,'path-pair',"));
-}
-
-/// A straight lane of 20 cones, 4 m apart along and 3.5 m across: its 18 edges along, 10 across, and some
-/// diagonals; the relaxation is no better than the optimum.
-TEST(Features, CountAndBound) {
-    const std::vector<AnnotatedScene> scenes{straight_scene()};
-    ConeSetOptions options;
-    options.sizes = {20};
-    options.time_limit_ms = 60'000.0;
-    const std::vector<FeatureRow> rows = feature_rows(scenes, options);
-    ASSERT_EQ(rows.size(), 1U);
-    const InstanceFeatures::Problem& problem = rows[0].features.problem;
-    EXPECT_EQ(problem.cones, 20U);
-    EXPECT_GE(problem.edges, 28U);
-    EXPECT_DOUBLE_EQ(problem.edge_density, static_cast<double>(problem.edges) / 190.0);
-    EXPECT_DOUBLE_EQ(problem.mean_degree, static_cast<double>(problem.edges) / 10.0);
-    ASSERT_TRUE(rows[0].features.relaxation);
-    EXPECT_GE(*rows[0].lp_gap, 0.0);
-    EXPECT_LE(rows[0].features.relaxation->degenerate, 1.0);
-    EXPECT_EQ(named(rows[0].features).size(), named({}).size());
-    EXPECT_EQ(std::string(named({})[kProblemFeatures].name), "columns");
-    EXPECT_THAT(feature_table(rows), HasSubstr("LP gap"));
 }
 
 TEST(PeakMemory, SeesWhatIsAllocatedAndFreed) {

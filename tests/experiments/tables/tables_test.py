@@ -1,5 +1,6 @@
 """tables_test.py ROOT: how the figures of runs become tables, on figures made by hand, and that a page which says something else is found."""
 
+import importlib.util
 import json
 import os
 import re
@@ -156,23 +157,7 @@ class Reproduce(unittest.TestCase):
         self.assertIn("the run 'b' is of commit d", found[0])
 
 
-    def test_families_of_the_judge_add_up_by_their_scenes(self):
-        def row(family, scenes, expected, attained, inside):
-            return {"family": family, "rate": 0.5, "scenes": scenes, "power": 1.0, "expected": expected, "attained": attained, "start": 0,
-                    "inside": inside, "ends": 1}
-        with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "course_judge.json"), "w", encoding="utf-8") as stream:
-                json.dump([row("a", 30, 0.9, 1.0, 0), row("b", 10, 0.5, 0.6, 3)], stream)
-            rows = held_out.judge_rows(folder)
-        self.assertEqual(rows[-1], {"family": "all", "rate": 0.5, "scenes": 40, "expected": 0.8, "attained": 0.9, "start": 0, "inside": 3, "ends": 2})
-
-
 class Solvers(unittest.TestCase):
-    def test_a_quantile_is_one_of_the_values_as_in_the_program(self):
-        times = [{"backend": "b", "nearest": 12, "scene": "s", "status": "optimal", "latency_ms": float(time)} for time in range(20, 0, -1)]
-        row = solvers.backend_rows(times)[0]  # 95 % of 20 values are 19 of them
-        self.assertEqual((row["median_ms"], row["p95_ms"], row["max_ms"]), (10.5, 19.0, 20.0))
-
     def test_a_proof_counts_from_its_time_on(self):
         def solution(track, status, milliseconds):
             return {"scene": f"{track}/pose_0001/fp_0.30/range_50", "status": status, "build_ms": 1.0, "solve_ms": milliseconds}
@@ -212,7 +197,6 @@ class Solvers(unittest.TestCase):
         counts = {row["gap"]: row["scenes"] for row in rows if row["lane"] == "beam"}
         self.assertEqual(counts, {"none": 1, "to 1 %": 2, "to 10 %": 1, "above": 1, "forbidden": 1})
 
-
     def test_classes_take_all_visible_cones_from_one_bound_up_to_the_next(self):
         def line(edges, proven=True, whole=True):
             return {"all_visible": whole, "cones": 12, "density": 4, "edges": edges, "proven": proven, "nodes": 1, "cpu_ms": edges / 100}
@@ -244,15 +228,17 @@ class Solvers(unittest.TestCase):
 
 
 class BeamPicture(unittest.TestCase):
-    def test_a_point_lies_at_its_share(self):
-        self.assertFalse(beam_picture.has_figures({"rows": []}))
+    def test_a_picture_holds_its_figures(self):
+        self.assertEqual(beam_picture.points({"rows": []}), {})
         row = {"table": "beam", "beam": 5, "best_score": 0.8, "first_usable": 0.9, "iou": 1.0}
-        text = beam_picture.picture({"rows": [row, row | {"beam": 10}]})
-        # The lowest line is of 80 %, the highest of 100 %.
-        self.assertIn('<polyline points="210.0,280.0 470.0,280.0"', text)
-        self.assertIn('<polyline points="210.0,170.0 470.0,170.0"', text)
-        self.assertIn('<polyline points="210.0,60.0 470.0,60.0"', text)
-        self.assertIn(">10</text>", text)
+        stored = {"rows": [row, row | {"beam": 10, "iou": 0.5}]}
+        self.assertEqual(beam_picture.points(stored)["iou"], [[5, 100.0], [10, 50.0]])
+        shown = tables.read(tables.BEAM_PICTURE)
+        self.assertNotEqual(beam_picture.points_in(shown), beam_picture.points(stored))
+        if importlib.util.find_spec("matplotlib"):
+            text = beam_picture.picture(stored)
+            self.assertEqual(beam_picture.points_in(text), beam_picture.points(stored))
+            self.assertEqual(len(re.findall(">(?:5|10)</text>", text)), 2)  # the marks of the axis
 
 
 @unittest.skipUnless(shutil.which("git"), "there is no git")

@@ -96,7 +96,7 @@ TEST(FrontJudgeLearner, ItsDerivativesAreThoseOfTheLoss) {
     FrontWeights weights = small_weights();
     weights.rank = weights.usable = random_front_network(kWholeLaneFeatures, 7);
     weights.right = random_front_network(kRightInputs, 8);
-    FrontJudgeLossOptions options;
+    FrontLossOptions options;
     options.listwise = 0.0;  // the sum does not include it
     FrontJudgeLearner learner;
     const auto loss_of = [&](const FrontWeights& at, FrontWeights* derivatives) {

@@ -57,22 +57,6 @@ TEST(FrontScenes, HalfOfTheDrawsShowColorsThatMayBeWrongOrMissing) {
     EXPECT_NEAR(soft / seen, 0.3, 0.12);
 }
 
-/// A fifth of the draws has a scene of false cones only.
-TEST(FrontScenes, SomeDrawsHaveASceneOfFalseConesAlone) {
-    const FrontScenes scenes(courses(), {}, 3);
-    std::size_t noisy = 0;
-    for (std::uint64_t number = 0; number < 200; ++number) {
-        const FrontScenes::Drawn drawn = scenes.draw(number);
-        noisy += drawn.noise.size();
-        for (const Scene& scene : drawn.noise) {
-            EXPECT_NO_THROW(validate(scene));
-            EXPECT_GE(scene.cones.size(), 4U);
-            EXPECT_LE(scene.cones.size(), 60U);
-        }
-    }
-    EXPECT_NEAR(static_cast<double>(noisy) / 200.0, 0.2, 0.08);
-}
-
 TEST(FrontScenes, ScenesOfFalseConesHaveTheShareCountsAndRangesThatAreGiven) {
     FrontSceneOptions options;
     options.scenes_per_draw = 1;
@@ -85,6 +69,7 @@ TEST(FrontScenes, ScenesOfFalseConesHaveTheShareCountsAndRangesThatAreGiven) {
     std::size_t noisy = 0;
     for (std::uint64_t number = 0; number < 200; ++number) {
         for (const Scene& scene : scenes.draw(number).noise) {
+            EXPECT_NO_THROW(validate(scene));
             ++noisy;
             counts.insert(scene.cones.size());
             for (const Cone& cone : scene.cones) farthest_m = std::max(farthest_m, cone.position.norm());
@@ -106,46 +91,32 @@ TEST(FrontScenes, ScenesOfFalseConesHaveTheShareCountsAndRangesThatAreGiven) {
     for (std::uint64_t number = 0; number < 50; ++number) EXPECT_TRUE(without.draw(number).noise.empty());
 }
 
-TEST(FrontScenes, DrawTheSameForTheSameNumber) {
-    const FrontScenes scenes(courses(), {}, 1);
-    std::size_t drawn_scenes = 0;
-    for (std::uint64_t number = 0; number < 6; ++number) {
+// Whatever changes are made to a course, its ground truth is still a lane with the best score.
+TEST(FrontScenes, DrawTheSameForTheSameNumberWithUsableGroundTruths) {
+    const FrontScenes scenes(courses(), {}, 2);
+    std::size_t all = 0;
+    for (std::uint64_t number = 0; number < 40; ++number) {
         const FrontScenes::Drawn first = scenes.draw(number);
         const FrontScenes::Drawn again = scenes.draw(number);
         ASSERT_EQ(first.scenes.size(), again.scenes.size());
         for (std::size_t i = 0; i < first.scenes.size(); ++i) {
             const AnnotatedScene& a = first.scenes[i];
             const AnnotatedScene& b = again.scenes[i];
+            EXPECT_NO_THROW(validate(a.scene));
             EXPECT_EQ(a.ground_truth, b.ground_truth);
             ASSERT_EQ(a.scene.cones.size(), b.scene.cones.size());
             for (std::size_t k = 0; k < a.scene.cones.size(); ++k)
                 EXPECT_EQ(a.scene.cones[k].position, b.scene.cones[k].position);
-            EXPECT_NO_THROW(validate(a.scene));
-            ++drawn_scenes;
-        }
-    }
-    EXPECT_GT(drawn_scenes, 12U);
-}
-
-// Whatever changes are made to a course, its ground truth is still a lane with the best score.
-TEST(FrontScenes, TheirGroundTruthsAreUsable) {
-    const FrontScenes scenes(courses(), {}, 2);
-    std::size_t usable = 0;
-    std::size_t all = 0;
-    for (std::uint64_t number = 0; number < 40; ++number) {
-        const FrontScenes::Drawn drawn = scenes.draw(number);
-        for (const AnnotatedScene& scene : drawn.scenes) {
             LaneAnswer answer;
             answer.status = LaneStatus::found;
-            answer.lane = *scene.ground_truth;
-            const SceneScore scored = score(scene, answer, 0.0, std::nullopt, &drawn.boundaries);
+            answer.lane = *a.ground_truth;
+            const SceneScore scored = score(a, answer, 0.0, std::nullopt, &first.boundaries);
             EXPECT_GT(scored.iou.value_or(0.0), 0.999);
+            EXPECT_TRUE(scored.usable().value_or(false)) << a.scene.id;
             ++all;
-            if (scored.usable().value_or(false)) ++usable;
         }
     }
     EXPECT_GT(all, 100U);
-    EXPECT_EQ(usable, all);
 }
 
 }  // namespace

@@ -6,8 +6,6 @@
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/generated_tracks.hpp"
-#include "experiments/training/front_checkpoint.hpp"
-#include "experiments/training/front_training_run.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/refusal.hpp"
@@ -31,7 +29,7 @@ FrontTrainingOptions quick() {
     options.search_steps = 6;
     options.judge_steps = 4;
     options.trust_draws = 5;
-    options.figures_every = 6;
+    options.report_every = 6;
     options.loss.search.beam_width = 6;
     return options;
 }
@@ -110,9 +108,6 @@ TEST(FrontTraining, LearnsTheSetForColorsAlone) {
     FrontWeights unchanged = train_front(courses(), {}, options, {});
     unchanged.colored.value().least_trust = options.initial->colored->least_trust;
     EXPECT_EQ(unchanged, *options.initial);
-    FrontTrainingOptions drawn = options;
-    drawn.initial.reset();
-    EXPECT_THROW((void)train_front(courses(), {}, drawn, {}), InvalidInput);
 }
 
 /// Lanes of random weights are rarely right, so the threshold depends on the drawn scenes.
@@ -151,14 +146,12 @@ TEST(FrontTraining, ResumesFromItsCheckpoint) {
     options.checkpoint_every = 5;
     // An exception from a report ends it in the middle of the second part.
     struct Ended {};
-    options.figures_every = 8;
-    EXPECT_THROW((void)train_front(courses(), {}, options, [](const FrontProgress&) { throw Ended{}; }),
-                 Ended);
-    std::size_t first_report = 0;
-    const FrontWeights resumed = train_front(courses(), {}, options, [&](const FrontProgress& progress) {
-        if (first_report == 0) first_report = progress.step;
-    });
-    EXPECT_EQ(first_report, 8U) << "gone on from step 5";
+    options.report_every = 8;
+    EXPECT_THROW((void)train_front(courses(), {}, options, [](auto&&...) { throw Ended{}; }), Ended);
+    std::vector<std::string> lines;
+    const FrontWeights resumed = train_front(
+        courses(), {}, options, [&](const std::string& line, const auto&) { lines.push_back(line); });
+    EXPECT_THAT(lines.front(), testing::StartsWith("step 8 of 16")) << "gone on from step 5";
     EXPECT_TRUE(resumed == whole);
     options.seed = 9;
     EXPECT_THROW((void)train_front(courses(), {}, options, {}), InputError) << "another training";
@@ -231,26 +224,17 @@ TEST(FrontTraining, FiguresOfARunCountWhereItsPathShowsTheWay) {
     EXPECT_EQ(figures.exact, 0.0);
 }
 
-TEST(FrontTraining, OptionsOutOfRangeAreNamed) {
+TEST(FrontTraining, NamesThatAreNoneAreRefused) {
     const auto key_of = [&](auto change) {
         FrontTrainingOptions options = quick();
         change(options);
         return refused_key([&] { validate(options); });
     };
     EXPECT_EQ(key_of([](auto&) {}), "accepted");
-    EXPECT_EQ(key_of([](auto& o) { o.draws_per_step = 0; }), "draws_per_step");
-    EXPECT_EQ(key_of([](auto& o) { o.scenes.scenes_per_draw = 0; }), "scenes_per_draw");
-    EXPECT_EQ(key_of([](auto& o) { o.without = {"turn", "colour"}; }), "without");
-    EXPECT_EQ(key_of([](auto& o) { o.judge_parts = {"usable", "left"}; }), "judge_parts");
-    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_share = 1.1; }), "noise_share");
-    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_cones = {9, 8}; }), "noise_cones");
-    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_cones = {0, 8}; }), "noise_cones");
-    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_ranges_m = {0.0, 8.0}; }), "noise_ranges_m");
-    EXPECT_EQ(key_of([](auto& o) { o.scenes.noise_ranges_m = {9.0, 8.0}; }), "noise_ranges_m");
-    EXPECT_EQ(key_of([](auto& o) { o.imitation_rate = -1.0; }), "imitation_rate");
-    EXPECT_EQ(key_of([](auto& o) { o.search_rate = 0.0; }), "search_rate");
-    EXPECT_EQ(key_of([](auto& o) { o.threads = 0; }), "threads");
-    EXPECT_EQ(key_of([](auto& o) { o.loss.search.beam_width = 0; }), "beam_width");
+    EXPECT_EQ(key_of([](auto& o) { o.without = {"turn", "colour"}; }), "--without");
+    EXPECT_EQ(key_of([](auto& o) { o.judge_parts = {"usable", "left"}; }), "--judge-parts");
+    EXPECT_EQ(key_of([](auto& o) { o.only_colors = true; }), "--only-colors");
+    EXPECT_EQ(key_of([](auto& o) { o.loss.search.drop = -1.0; }), "drop");
     EXPECT_THROW((void)train_front({}, {}, quick(), {}), InvalidInput);
 }
 
@@ -261,12 +245,13 @@ TEST(FrontTraining, ARunRecordsWhatItDependedOn) {
     options.hold_out_every_m = 60.0;
     options.rates = {0.3};
     options.training = quick();
-    std::size_t reports = 0;
-    const FrontTrainingRun run = run_front_training(options, [&](const FrontProgress& progress) {
-        ++reports;
-        EXPECT_EQ(progress.held_out.size(), 2U);
-    });
-    EXPECT_EQ(reports, 3U);  // after 6, 12 and all 16 steps
+    std::vector<std::string> lines;
+    const FrontTrainingRun run =
+        run_front_training(options, [&](const std::string& line) { lines.push_back(line.substr(0, 16)); });
+    // After 6, 12 and all 16 steps: a line of its own, and one for each condition.
+    EXPECT_THAT(lines, testing::ElementsAre("step 6 of 16, mo", testing::StartsWith("  paper"),
+                                            testing::StartsWith("  car"), "step 12 of 16, t", testing::_,
+                                            testing::_, "step 16 of 16, j", testing::_, testing::_));
     EXPECT_THAT(run.record, testing::HasSubstr(R"("tracks":["slalom@1"])"));
     EXPECT_THAT(run.record, testing::HasSubstr(R"("hold_out_tracks":["kidney@2"])"));
     EXPECT_THAT(run.record, testing::HasSubstr(R"("beam":6)"));

@@ -1,17 +1,16 @@
 #include "experiments/training/rank_net_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/rank_net_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "experiments/training/adam.hpp"
-#include "experiments/training/track_variant.hpp"
+#include "experiments/training/training_loop.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/testing.hpp"
 
 #include <boost/random/uniform_01.hpp>
+#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
@@ -64,24 +63,31 @@ void fill_at_random(auto& values, boost::random::mt19937_64& random) {
         values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
 }
 
+/// Of five units and eight inputs.
+RankNetParameters random_parameters(boost::random::mt19937_64& random) {
+    RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
+    fill_at_random(parameters.hidden, random);
+    fill_at_random(parameters.hidden_bias, random);
+    fill_at_random(parameters.output, random);
+    return parameters;
+}
+
 /// The gradient is the slope of the loss along every parameter.
-void expect_slopes(RankNetParameters& parameters, const RankNetParameters& gradient,
-                   const std::function<double()>& loss) {
-    const auto check = [&](auto& values, const auto& derivatives) {
-        constexpr double kStep = 1e-6;
-        for (Eigen::Index i = 0; i < values.size(); ++i) {
-            const double value = values(i);
-            values(i) = value + kStep;
-            const double above = loss();
-            values(i) = value - kStep;
-            const double below = loss();
-            values(i) = value;
-            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
-        }
+template <typename Loss, typename Batch>
+void expect_slopes(const Loss& loss, const RankNetParameters& parameters, const Batch& batch) {
+    RankNetParameters gradient;
+    (void)loss(parameters, batch, &gradient);
+    const Eigen::ArrayXd slopes = flat(gradient);
+    const auto loss_at = [&](Eigen::Index i, double step) {
+        Eigen::ArrayXd moved = flat(parameters);
+        moved[i] += step;
+        RankNetParameters other = parameters;
+        set(other, moved);
+        return loss(other, batch, nullptr);
     };
-    check(parameters.hidden, gradient.hidden);
-    check(parameters.hidden_bias, gradient.hidden_bias);
-    check(parameters.output, gradient.output);
+    constexpr double kStep = 1e-6;
+    for (Eigen::Index i = 0; i < slopes.size(); ++i)
+        EXPECT_NEAR(slopes[i], (loss_at(i, kStep) - loss_at(i, -kStep)) / (2.0 * kStep), 1e-8) << i;
 }
 
 TEST(PairLoss, OfOnePairByHand) {
@@ -98,36 +104,14 @@ TEST(PairLoss, OfOnePairByHand) {
 
 TEST(PairLoss, GradientEqualsFiniteDifferences) {
     boost::random::mt19937_64 random(4);
-    const auto fill = [&](auto& values) { fill_at_random(values, random); };
-    RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
-    fill(parameters.hidden);
-    fill(parameters.hidden_bias);
-    fill(parameters.output);
+    const RankNetParameters parameters = random_parameters(random);
     CandidatePairs pairs{Eigen::MatrixXd(8, 7), Eigen::MatrixXd(8, 7), Eigen::RowVectorXd(7)};
-    fill(pairs.first);
-    fill(pairs.second);
-    fill(pairs.first_is_better);
+    fill_at_random(pairs.first, random);
+    fill_at_random(pairs.second, random);
+    fill_at_random(pairs.first_is_better, random);
     pairs.first_is_better = pairs.first_is_better.cwiseAbs();
-    RankNetParameters gradient;
-    (void)pair_loss(parameters, pairs, &gradient);
-    expect_slopes(parameters, gradient, [&] { return pair_loss(parameters, pairs, nullptr); });
+    expect_slopes(pair_loss, parameters, pairs);
 }
-
-/// Random parameters and two scenes of three and four candidates with eight inputs.
-struct ChoiceProblem {
-    RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
-    CandidateScenes scenes{Eigen::MatrixXd(8, 7), Eigen::RowVectorXd(7), {0, 3, 7}};
-
-    ChoiceProblem() {
-        boost::random::mt19937_64 random(9);
-        const auto fill = [&](auto& values) { fill_at_random(values, random); };
-        fill(parameters.hidden);
-        fill(parameters.hidden_bias);
-        fill(parameters.output);
-        fill(scenes.inputs);
-        fill(scenes.quality);
-    }
-};
 
 TEST(ChoiceLoss, OfTwoScenesByHand) {
     // One unit that passes on the only input: scores 1 and 1 in the first scene, ln 3 and 0 in the second.
@@ -142,29 +126,29 @@ TEST(ChoiceLoss, OfTwoScenesByHand) {
 }
 
 TEST(ChoiceLoss, GradientEqualsFiniteDifferences) {
-    ChoiceProblem problem;
-    RankNetParameters gradient;
-    (void)choice_loss(problem.parameters, problem.scenes, &gradient);
-    expect_slopes(problem.parameters, gradient,
-                  [&] { return choice_loss(problem.parameters, problem.scenes, nullptr); });
-}
-
-TEST(RankNetTraining, LearnsToChooseFromWholeScenes) {
-    RankNetTrainingOptions options = quick();
-    options.loss = RankLoss::choice;
-    options.scenes_a_step = 10;
-    options.epochs = 60;
-    const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), options);
-    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
-    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+    boost::random::mt19937_64 random(9);
+    const RankNetParameters parameters = random_parameters(random);
+    CandidateScenes scenes{Eigen::MatrixXd(8, 7), Eigen::RowVectorXd(7), {0, 3, 7}};
+    fill_at_random(scenes.inputs, random);
+    fill_at_random(scenes.quality, random);
+    expect_slopes(choice_loss, parameters, scenes);
 }
 
 TEST(RankNetTraining, LearnsWhatDecides) {
-    const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), quick());
-    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
-    EXPECT_EQ(figures.scenes, 50u);
-    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
-    EXPECT_EQ(figures.critical_share, 0.0);
+    RankNetTrainingOptions options = quick();
+    const auto expect_learned = [&] {
+        const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), options);
+        const RankingFigures figures =
+            ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
+        EXPECT_EQ(figures.scenes, 50u);
+        EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+        EXPECT_EQ(figures.critical_share, 0.0);
+    };
+    expect_learned();
+    options.loss = RankLoss::choice;
+    options.scenes_a_step = 10;
+    options.epochs = 60;
+    expect_learned();
 }
 
 TEST(RankNetTraining, DecayKeepsTheWeightsSmall) {
@@ -198,41 +182,28 @@ TEST(RankNetTraining, StoresMeanAndDeviationOfTheInputs) {
     EXPECT_NEAR(weights.mean(2), 20.0 / 6.0, 0.3) << "half the distance of left and right";
 }
 
-TEST(RankNetTraining, ThePenaltyMakesDivergingLanesWorse) {
-    // The better half by the fourth feature diverges at 5 m.
-    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 5);
-    for (CandidateList& list : lists) {
-        for (std::size_t i = 0; i < list.lanes.size(); ++i) {
-            if (list.lanes[i][3] < 110.0) list.divergence_m[i] = 5.0;
+/// The better half by the fourth feature diverges at 5 m, or ends too early.
+TEST(RankNetTraining, APenaltyMakesLanesWorse) {
+    const auto chosen = [](bool diverges, double RankNetTrainingOptions::*penalty) {
+        std::vector<CandidateList> lists = lists_by_fourth_feature(200, 5);
+        for (CandidateList& list : lists) {
+            for (std::size_t i = 0; i < list.lanes.size(); ++i) {
+                if (list.lanes[i][3] >= 110.0) continue;
+                if (diverges) list.divergence_m[i] = 5.0;
+                list.usable[i] = diverges;
+            }
         }
-    }
-    RankNetTrainingOptions options = quick();
-    const auto critical_share = [&] {
-        return ranking_figures(lists, *make_rank_net(train_rank_net(lists, options))).critical_share;
-    };
-    const double without = critical_share();
-    options.divergence_penalty = 1.0;
-    EXPECT_GT(without, 0.9);
-    EXPECT_LT(critical_share(), 0.1);
-}
-
-TEST(RankNetTraining, ThePenaltyMakesLanesThatAreNotUsableWorse) {
-    // The better half by the fourth feature ends too early.
-    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 5);
-    for (CandidateList& list : lists) {
-        for (std::size_t i = 0; i < list.lanes.size(); ++i) list.usable[i] = list.lanes[i][3] >= 110.0;
-    }
-    RankNetTrainingOptions options = quick();
-    const auto figures = [&] {
+        RankNetTrainingOptions options = quick();
+        if (penalty != nullptr) options.*penalty = 1.0;
         return ranking_figures(lists, *make_rank_net(train_rank_net(lists, options)));
     };
-    options.divergence_penalty = 1.0;  // none of them diverges
-    const RankingFigures without = figures();
-    EXPECT_LT(without.usable_share, 0.1);
-    EXPECT_GT(without.most_usable_share, 0.9);
-    EXPECT_EQ(without.critical_share, 0.0);
-    options.unusable_penalty = 1.0;
-    EXPECT_GT(figures().usable_share, 0.9);
+    EXPECT_GT(chosen(true, nullptr).critical_share, 0.9);
+    EXPECT_LT(chosen(true, &RankNetTrainingOptions::divergence_penalty).critical_share, 0.1);
+    const RankingFigures early = chosen(false, &RankNetTrainingOptions::divergence_penalty);
+    EXPECT_LT(early.usable_share, 0.1) << "none of them diverges";
+    EXPECT_GT(early.most_usable_share, 0.9);
+    EXPECT_EQ(early.critical_share, 0.0);
+    EXPECT_GT(chosen(false, &RankNetTrainingOptions::unusable_penalty).usable_share, 0.9);
 }
 
 // One unit passes on the first feature, so the candidate with the largest one is chosen.
@@ -268,28 +239,13 @@ TEST(RankingFigures, OfThreeScenesByHand) {
     EXPECT_DOUBLE_EQ(figures.least_critical_share, 1.0 / 3.0);
 }
 
-TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
-    const auto key_of = [](auto change) {
-        RankNetTrainingOptions options = quick();
-        change(options);
-        return refused_key([&] { (void)train_rank_net(lists_by_fourth_feature(2, 0), options); });
-    };
-    EXPECT_EQ(key_of([](RankNetTrainingOptions&) {}), "accepted");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.inputs = 9; }), "inputs");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.units = 0; }), "units");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.epochs = 0; }), "epochs");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.pairs_a_step = 0; }), "pairs_a_step");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.scenes_a_step = 0; }), "scenes_a_step");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.learning_rate = 0.0; }), "learning_rate");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.weight_decay = -1.0; }), "weight_decay");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.weight_decay = 1.0 / o.learning_rate; }),
-              "weight_decay");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.iou_factor = -1.0; }), "iou_factor");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.divergence_penalty = -1.0; }), "divergence_penalty");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.late_divergence_penalty = -1.0; }),
-              "late_divergence_penalty");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.unusable_penalty = -1.0; }), "unusable_penalty");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.leader_share = 1.5; }), "leader_share");
+TEST(RankNetTraining, RefusesOptionsThatDoNotFitEachOther) {
+    RankNetTrainingOptions options = quick();
+    options.weight_decay = 1.0 / options.learning_rate;
+    EXPECT_EQ(refused_key([&] { (void)train_rank_net(lists_by_fourth_feature(2, 0), options); }), "--decay");
+    options = quick();
+    options.inputs = 9;
+    EXPECT_EQ(refused_key([&] { (void)train_rank_net(lists_by_fourth_feature(2, 0), options); }), "inputs");
     EXPECT_THROW((void)train_rank_net({}, quick()), InvalidInput);
 }
 
@@ -379,17 +335,20 @@ TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {
     options.candidates.max_per_scene = 10;
     options.candidates.show_progress = false;
     options.training = quick();
-    const auto file = [&] {
-        const TrainingRun run = run_training(options);
-        EXPECT_GT(run.held_out.scenes, 0u);
-        return rank_net_json(run.weights, run.record);
+    const auto scenes_of = [](const std::string& file, const char* figures) {
+        return nlohmann::json::parse(file).at("training").at(figures).at("scenes").get<std::size_t>();
     };
-    const std::string first = file();
-    options.candidates.threads = 2;
-    options.scenes.threads = 2;
-    EXPECT_EQ(file(), first);
+    const std::string alone = run_training(options).file;
+    EXPECT_GT(scenes_of(alone, "figures_of_hold_out"), 0U);
+    // Variants of the tracks are learned from too, and the record names the tracks alone.
+    options.variants = 2;
+    const std::string varied = run_training(options).file;
+    EXPECT_GE(scenes_of(varied, "figures_of_training"), 2 * scenes_of(alone, "figures_of_training"));
+    EXPECT_THAT(varied, testing::HasSubstr("\"tracks\": [\"circle@1\"],\n  \"variants\": 2"));
+    options.candidates.threads = options.scenes.threads = 2;
+    EXPECT_EQ(run_training(options).file, varied);
     options.training.seed = 1;
-    EXPECT_NE(file(), first);
+    EXPECT_NE(run_training(options).file, varied);
 }
 
 TEST(TrackVariant, IsStretchedAndEverySecondOneIsDrivenTheOtherWay) {
@@ -425,28 +384,6 @@ TEST(TrackVariant, IsStretchedAndEverySecondOneIsDrivenTheOtherWay) {
         EXPECT_NE(track_variant(track, number, 8).cones[5].position, variant.cones[5].position);
         EXPECT_NE(track_variant(track, number + 1, 7).cones[5].position, variant.cones[5].position);
     }
-}
-
-TEST(TrainingRun, TrainsOnVariantsTooAndNamesTheTracksAlone) {
-    TrainingRunOptions options;
-    options.tracks = {"generated:circle@1"};
-    options.scenes.false_positive_rates = {0.2};
-    options.scenes.ranges_m = {20.0};
-    options.scenes.every_m = 20.0;
-    options.candidates.show_progress = false;
-    options.training = quick();
-    const TrainingRun alone = run_training(options);
-    options.variants = 2;
-    const TrainingRun varied = run_training(options);
-    EXPECT_GE(varied.trained.scenes, 2 * alone.trained.scenes);
-    EXPECT_NE(varied.record.find(R"("tracks":["circle@1"],"variants":2)"), std::string::npos)
-        << varied.record;
-    EXPECT_EQ(rank_net_json(varied.weights, varied.record), [&] {
-        options.candidates.threads = 2;
-        options.scenes.threads = 2;
-        const TrainingRun again = run_training(options);
-        return rank_net_json(again.weights, again.record);
-    }());
 }
 
 }  // namespace

@@ -5,9 +5,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "experiments/tuning/evaluation.hpp"
-#include "experiments/tuning/objective_sums.hpp"
 #include "experiments/tuning/tuner.hpp"
-#include "experiments/tuning/weight_rounds.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/testing.hpp"
 
@@ -72,7 +70,7 @@ RatedGraph rated(double spacing, double facing, double value) {
 
 TEST(ExpectedValue, IsHalfOfTwoThatCostTheSameAndAllOfOneThatIsFarCheaper) {
     RldParameters parameters = with_shape_costs({});
-    parameters.w_s = parameters.w_v = 1.0;
+    parameters.w_s = parameters.facing_weight = 1.0;
     const std::vector<RatedGraphs> same{{rated(1.0, 0.0, 1.0), rated(1.0, 0.0, 0.0)}};
     EXPECT_DOUBLE_EQ(expected_value(same, parameters, nullptr), 0.5);
     const std::vector<RatedGraphs> cheaper{{rated(1.0, 0.0, 1.0), rated(9.0, 1.0, 0.0)}};
@@ -107,9 +105,9 @@ TEST(FitWeights, MakesTheRightOnesCheapest) {
                                           {rated(2.0, 0.0, 1.0), rated(0.0, 1.0, 0.0)}};
     RldParameters start = with_shape_costs({});
     start.w_s = 1.0;
-    start.w_v = 0.5;
+    start.facing_weight = 0.5;
     const RldParameters fitted = fit_weights(scenes, start);
-    EXPECT_GT(fitted.w_v, 2.0 * fitted.w_s - 0.2);
+    EXPECT_GT(fitted.facing_weight, 2.0 * fitted.w_s - 0.2);
     EXPECT_GT(expected_value(scenes, fitted, nullptr), 0.99);
     EXPECT_EQ(fitted.w_b, start.w_b);
     EXPECT_EQ(fitted.d_e, start.d_e);
@@ -117,9 +115,10 @@ TEST(FitWeights, MakesTheRightOnesCheapest) {
 
 TEST(FitWeights, StaysWhereNothingIsBetter) {
     const std::vector<RatedGraphs> scenes{{rated(1.0, 0.0, 0.5), rated(0.0, 1.0, 0.5)}};
-    const RldParameters start = with_shape_costs({});
-    EXPECT_EQ(fit_weights(scenes, start).w_v, start.w_v);
-    EXPECT_EQ(fit_weights({}, start).w_v, start.w_v);
+    RldParameters start = with_shape_costs({});
+    start.facing_weight = 1.2345;  // which rounding to four decimals keeps
+    EXPECT_EQ(fit_weights(scenes, start).facing_weight, start.facing_weight);
+    EXPECT_EQ(fit_weights({}, start).facing_weight, start.facing_weight);
 }
 
 std::vector<double> weights_of(const std::vector<RldParameters>& rounds) {
@@ -150,9 +149,9 @@ TEST(WeightRounds, GiveAWeightToATermThatHadNone) {
     const Evaluation evaluation(scenes_of({"generated:curvy"}, 0.5),
                                 {.nearest = 12, .context = 24, .time_limit_ms = 1e5});
     RldParameters start = with_shape_costs({});
-    start.w_u = 0.0;
+    start.unevenness_weight = 0.0;
     const auto rounds = fit_weights_in_rounds(evaluation, start, {"curvy"}, {2, 3});
-    EXPECT_GE(rounds.back().w_u, 0.01) << "the lowest of its range";
+    EXPECT_GE(rounds.back().unevenness_weight, 0.01) << "the lowest of its range";
 }
 
 TEST(WeightRounds, RefuseABenefitOfZero) {

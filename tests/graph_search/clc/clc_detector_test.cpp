@@ -4,8 +4,12 @@
 #include "graph_search/clc/lane_features.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
+#include "tests/support/metamorphic.hpp"
 #include "tests/support/no_time_limit.hpp"
+#include "tests/support/processor_time.hpp"
+#include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/straight_lane.hpp"
 #include "tests/support/testing.hpp"
 
 #include <unordered_map>
@@ -16,7 +20,6 @@ namespace conelane {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 LaneAnswer detect(const Scene& scene, const ClcOptions& options = {},
                   const DetectionLimits& limits = tests::kNoTimeLimit) {
@@ -55,40 +58,41 @@ Scene with_false_positives(Scene scene, std::size_t count, unsigned seed) {
     return scene;
 }
 
-Scene mirrored(Scene scene) {
-    for (Cone& cone : scene.cones) cone.position.y() = -cone.position.y();
-    return scene;
+using Lanes = std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>>;
+
+/// The candidates of an answer, each of which it has once.
+Lanes lanes_of(const LaneAnswer& answer) {
+    Lanes lanes;
+    for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+        EXPECT_TRUE(lanes.insert({candidate.lane.left, candidate.lane.right}).second) << "met twice";
+    }
+    return lanes;
 }
 
-TEST(ClcDetector, FindsAStraightLaneAmongNothingElse) {
-    Scene scene;
-    for (const double x : {1.0, 5.0, 9.0}) {
-        scene.cones.push_back({static_cast<ConeId>(10 * x), {x, 1.8}});
-        scene.cones.push_back({static_cast<ConeId>(10 * x + 1), {x, -1.8}});
+std::vector<std::pair<std::string, ClcOptions>> variants() {
+    ClcOptions warm = extended_clc_options();
+    warm.warm_start = true;
+    return {{"extended", extended_clc_options()},
+            {"paper", paper_clc_options()},
+            {"longest", {}},
+            {"warm", warm}};
+}
+
+/// Adds `cones` cones beside a lane, at one place or, with `spread_m`, around it.
+Scene heap(std::size_t cones, double spread_m) {
+    Scene scene = tests::straight_lane(6);
+    const Scene heaped = tests::strewn_scene(cones, 1.0, 1.0);
+    for (const Cone& cone : heaped.cones) {
+        scene.cones.push_back({1000 + cone.id, spread_m * cone.position + Point(9.0, 2.0)});
     }
-    const LaneAnswer answer = detect(scene);
-    EXPECT_EQ(answer.status, LaneStatus::found);
-    EXPECT_THAT(answer.lane.left, ElementsAre(10, 50, 90));
-    EXPECT_THAT(answer.lane.right, ElementsAre(11, 51, 91));
-    EXPECT_FALSE(answer.lane.closed);
-    ASSERT_TRUE(answer.enumeration);
-    EXPECT_TRUE(answer.enumeration->complete);
-    EXPECT_THAT(answer.enumeration->candidates, IsEmpty());
+    return scene;
 }
 
 TEST(ClcDetector, FindsAWindingLaneWhollyWhereverTheCarStands) {
     for (unsigned seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(seed);
-        Scene scene = winding_lane(9, 0.5, seed);
-        const double yaw_rad = 0.37 * seed;
-        const Point position(100.0 * seed, -50.0);
-        scene.pose = {position, yaw_rad};
-        for (Cone& cone : scene.cones) {
-            const Point p = cone.position;
-            cone.position = position + Point(std::cos(yaw_rad) * p.x() - std::sin(yaw_rad) * p.y(),
-                                             std::sin(yaw_rad) * p.x() + std::cos(yaw_rad) * p.y());
-        }
-        const LaneAnswer answer = detect(scene);
+        const Scene turned = tests::rotated(winding_lane(9, 0.5, seed), 0.37 * seed);
+        const LaneAnswer answer = detect(tests::moved(turned, {100.0 * seed, -50.0}));
         EXPECT_THAT(answer.lane.left, ElementsAre(0, 2, 4, 6, 8, 10, 12, 14, 16));
         EXPECT_THAT(answer.lane.right, ElementsAre(1, 3, 5, 7, 9, 11, 13, 15, 17));
     }
@@ -115,13 +119,12 @@ TEST(ClcDetector, CandidatesAreFeasibleDistinctAndHoldTheAnswerAsTheLongest) {
         const LaneAnswer answer = detect(scene, {}, limits);
         ASSERT_EQ(answer.status, LaneStatus::found);
         ASSERT_FALSE(answer.enumeration->candidates.empty());
-        std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> distinct;
+        (void)lanes_of(answer);
         std::int64_t iteration = 0;
         for (const LaneCandidate& candidate : answer.enumeration->candidates) {
             EXPECT_GE(candidate.lane.left.size(), 2u);
             EXPECT_GE(candidate.lane.right.size(), 2u);
             EXPECT_TRUE(satisfies_constraints(points(candidate.lane.left), points(candidate.lane.right), {}));
-            EXPECT_TRUE(distinct.insert({candidate.lane.left, candidate.lane.right}).second);
             EXPECT_LE(iteration, candidate.iteration);
             iteration = candidate.iteration;
             EXPECT_LE(length_m(candidate.lane), length_m(answer.lane) + 1e-9);
@@ -135,12 +138,7 @@ TEST(ClcDetector, CandidatesAreFeasibleDistinctAndHoldTheAnswerAsTheLongest) {
 TEST(ClcDetector, GoesOnPastAMissedCone) {
     for (std::size_t missed = 1; missed < 7; ++missed) {
         SCOPED_TRACE(missed);
-        Scene scene;
-        for (int i = 0; i < 9; ++i) {
-            const double x = 1.0 + 4.0 * i;
-            scene.cones.push_back({2 * i, {x, 1.8}});
-            scene.cones.push_back({2 * i + 1, {x + 0.2, -1.8}});
-        }
+        Scene scene = tests::straight_lane(9);
         scene.cones.erase(scene.cones.begin() + static_cast<std::ptrdiff_t>(2 * missed));
         std::vector<ConeId> left{0, 2, 4, 6, 8, 10, 12, 14, 16};
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(missed));
@@ -152,31 +150,6 @@ TEST(ClcDetector, GoesOnPastAMissedCone) {
     }
 }
 
-TEST(ClcDetector, AMirroredSceneHasTheMirroredLane) {
-    for (unsigned seed = 0; seed < 60; ++seed) {
-        SCOPED_TRACE(seed);
-        const Scene scene = with_false_positives(winding_lane(8, 0.4, seed), seed % 20, seed);
-        const LaneAnswer answer = detect(scene);
-        const LaneAnswer of_mirrored = detect(mirrored(scene));
-        EXPECT_EQ(answer.lane.left, of_mirrored.lane.right);
-        EXPECT_EQ(answer.lane.right, of_mirrored.lane.left);
-        EXPECT_EQ(answer.enumeration->iterations, of_mirrored.enumeration->iterations);
-    }
-}
-
-TEST(ClcDetector, TheRankingOfAMirroredSceneIsTheSame) {
-    for (const ClcOptions& options : {paper_clc_options(), extended_clc_options()}) {
-        for (unsigned seed = 0; seed < 40; ++seed) {
-            SCOPED_TRACE(seed);
-            const Scene scene = with_false_positives(winding_lane(8, 0.4, seed), seed % 20, seed);
-            const LaneAnswer answer = detect(scene, options);
-            const LaneAnswer of_mirrored = detect(mirrored(scene), options);
-            EXPECT_EQ(answer.lane.left, of_mirrored.lane.right);
-            EXPECT_EQ(answer.lane.right, of_mirrored.lane.left);
-        }
-    }
-}
-
 TEST(ClcDetector, AWarmStartFindsTheSameLanesWhereTheSearchIsComplete) {
     ClcOptions options;
     options.iteration_limit = 1'000'000;
@@ -184,13 +157,6 @@ TEST(ClcDetector, AWarmStartFindsTheSameLanesWhereTheSearchIsComplete) {
     options.warm_start = true;
     DetectionLimits limits = tests::kNoTimeLimit;
     limits.keep_candidates = true;
-    const auto candidates = [](const LaneAnswer& answer) {
-        std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> lanes;
-        for (const LaneCandidate& candidate : answer.enumeration->candidates) {
-            EXPECT_TRUE(lanes.insert({candidate.lane.left, candidate.lane.right}).second) << "met twice";
-        }
-        return lanes;
-    };
     for (unsigned seed = 0; seed < 15; ++seed) {
         SCOPED_TRACE(seed);
         const Scene scene = with_false_positives(winding_lane(6, 0.4, seed), 6, seed);
@@ -199,7 +165,7 @@ TEST(ClcDetector, AWarmStartFindsTheSameLanesWhereTheSearchIsComplete) {
         const LaneAnswer warm = detector->detect(scene, limits);
         ASSERT_TRUE(cold.enumeration->complete);
         ASSERT_TRUE(warm.enumeration->complete);
-        EXPECT_EQ(candidates(cold), candidates(warm));
+        EXPECT_EQ(lanes_of(cold), lanes_of(warm));
         EXPECT_EQ(cold.lane, warm.lane);
         // The last answer is followed first: one step for each of its cones after the first two.
         const auto steps = static_cast<std::int64_t>(cold.lane.left.size() + cold.lane.right.size() - 2);
@@ -209,73 +175,21 @@ TEST(ClcDetector, AWarmStartFindsTheSameLanesWhereTheSearchIsComplete) {
     }
 }
 
-TEST(ClcDetector, ResetForgetsTheLastLane) {
-    ClcOptions options;
-    options.warm_start = true;
-    const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
-    DetectionLimits limits = tests::kNoTimeLimit;
-    limits.keep_candidates = true;
-    const Scene scene = with_false_positives(winding_lane(10, 0.4, 2), 20, 2);
-    const auto order = [&] {
-        const LaneAnswer answer = detector->detect(scene, limits);
-        std::vector<Lane> lanes;
-        for (const LaneCandidate& candidate : answer.enumeration->candidates) lanes.push_back(candidate.lane);
-        return lanes;
-    };
-    const std::vector<Lane> cold = order();
-    detector->reset();
-    EXPECT_EQ(order(), cold);
-}
-
 TEST(ClcDetector, AnExactlySymmetricSceneIsSearchedAlikeFromBothSides) {
-    Scene scene;
-    for (int i = 0; i < 6; ++i) {
-        scene.cones.push_back({2 * i, {1.0 + 4.0 * i, 1.8}});
-        scene.cones.push_back({2 * i + 1, {1.0 + 4.0 * i, -1.8}});
-    }
+    const Scene scene = tests::straight_lane(6, 0.0);
     const LaneAnswer answer = detect(scene);
-    const LaneAnswer of_mirrored = detect(mirrored(scene));
+    const LaneAnswer of_mirrored = detect(tests::mirrored(scene));
     EXPECT_EQ(answer.lane.left, of_mirrored.lane.right);
     EXPECT_EQ(answer.lane.right, of_mirrored.lane.left);
     EXPECT_EQ(answer.enumeration->iterations, of_mirrored.enumeration->iterations);
 }
 
-TEST(ClcDetector, AnswersTheSameOnEachCallAndInAnyOrderOfTheCones) {
-    for (const ClcOptions& options : {ClcOptions{}, extended_clc_options()}) {
-        const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
-        for (unsigned seed = 0; seed < 20; ++seed) {
-            SCOPED_TRACE(seed);
-            Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 15, seed);
-            const LaneAnswer first = detector->detect(scene, tests::kNoTimeLimit);
-            EXPECT_EQ(detector->detect(scene, tests::kNoTimeLimit).lane, first.lane);
-            std::ranges::reverse(scene.cones);
-            const LaneAnswer reversed = detector->detect(scene, tests::kNoTimeLimit);
-            EXPECT_EQ(reversed.lane, first.lane);
-            EXPECT_EQ(reversed.enumeration->iterations, first.enumeration->iterations);
-        }
-    }
-}
-
-TEST(ClcDetector, TriesOtherStartsWhereFalsePositivesStandAtTheCar) {
-    Scene scene;
-    for (const double x : {3.0, 7.0, 11.0, 15.0}) {
-        scene.cones.push_back({static_cast<ConeId>(10 * x), {x, 1.8}});
-        scene.cones.push_back({static_cast<ConeId>(10 * x + 1), {x, -1.8}});
-    }
-    // Too far from everything else, but the most symmetric and the nearest pair.
-    scene.cones.push_back({1000, {-2.7, 1.4}});
-    scene.cones.push_back({1001, {-2.7, -1.4}});
-    ClcOptions one;
-    one.starting_pairs = 1;
-    EXPECT_EQ(detect(scene, one).status, LaneStatus::stopped);
-    EXPECT_THAT(detect(scene).lane.left, ElementsAre(30, 70, 110, 150));
-}
-
-std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> candidates(const Scene& scene,
-                                                                         const ClcOptions& options) {
-    const LaneAnswer answer = detect(scene, options, {.keep_candidates = true});
+Lanes candidates(const Scene& scene, const ClcOptions& options) {
+    DetectionLimits limits = tests::kNoTimeLimit;
+    limits.keep_candidates = true;
+    const LaneAnswer answer = detect(scene, options, limits);
     EXPECT_LE(answer.enumeration->iterations, options.iteration_limit);
-    std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> lanes;
+    Lanes lanes;
     for (const LaneCandidate& candidate : answer.enumeration->candidates) {
         lanes.emplace(candidate.lane.left, candidate.lane.right);
     }
@@ -370,34 +284,6 @@ TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
     EXPECT_EQ(answer.lane.right.size(), 12u);
 }
 
-TEST(ClcDetector, SaysWhyThereIsNoLane) {
-    EXPECT_EQ(detect({}).status, LaneStatus::none);
-    EXPECT_TRUE(detect({}).enumeration->complete);
-    Scene one_cone_a_side;
-    one_cone_a_side.cones = {{0, {1, 1.8}}, {1, {1, -1.8}}};
-    EXPECT_EQ(detect(one_cone_a_side).status, LaneStatus::none);
-    Scene heap;
-    for (int i = 0; i < 30; ++i) heap.cones.push_back({i, {1.0, 1.5}});
-    EXPECT_EQ(detect(heap).status, LaneStatus::none);
-    DetectionLimits no_time;
-    no_time.time_limit_ms = 0.0;
-    const LaneAnswer late = detect(winding_lane(8, 0.4, 1), {}, no_time);
-    EXPECT_EQ(late.status, LaneStatus::stopped);
-    EXPECT_THAT(late.lane.left, IsEmpty());
-    EXPECT_FALSE(late.enumeration->complete);
-}
-
-TEST(ClcDetector, WhatWasFoundInTimeIsAnAnswer) {
-    ClcOptions endless;
-    endless.iteration_limit = std::numeric_limits<std::int64_t>::max();
-    DetectionLimits limits = tests::kNoTimeLimit;
-    limits.time_limit_ms = 20.0;
-    const LaneAnswer answer = detect(with_false_positives(winding_lane(20, 0.3, 3), 60, 3), endless, limits);
-    EXPECT_EQ(answer.status, LaneStatus::found);
-    EXPECT_FALSE(answer.enumeration->complete);
-    EXPECT_GT(answer.enumeration->iterations, 32);
-}
-
 TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     const auto key_of = [](auto change) {
         ClcOptions options;
@@ -419,6 +305,113 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.step_scores = std::make_shared<StepScores>(); }), "scores");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
               "next_vertex_distance_weight");
+}
+
+class ThrowingRanking final : public LaneRanking {
+  public:
+    void score(std::span<const LaneFeatures>, std::span<double>) const override {
+        throw std::runtime_error("no scores today");
+    }
+};
+
+TEST(ClcDetector, ARankingThatThrowsIsAnError) {
+    ClcOptions options;
+    options.ranking = std::make_shared<ThrowingRanking>();
+    const LaneAnswer answer =
+        make_clc_detector(options)->detect(tests::straight_lane(5), tests::kNoTimeLimit);
+    EXPECT_EQ(answer.status, LaneStatus::error);
+    EXPECT_EQ(answer.message, "no scores today");
+}
+
+TEST(ClcDetector, NoneOnlyWhereEverythingWasSearched) {
+    // The first step goes to a cone that no lane can include; with more steps, a lane is found.
+    const Scene scene = tests::straight_lane(4);
+    ClcOptions options;
+    options.iteration_limit = 1;
+    const LaneAnswer one_step = make_clc_detector(options)->detect(scene, tests::kNoTimeLimit);
+    EXPECT_EQ(one_step.status, LaneStatus::stopped);
+    EXPECT_EQ(one_step.stopped_by, StopReason::iterations);
+    EXPECT_FALSE(one_step.enumeration->complete);
+
+    // The nearest pair starts no lane.
+    Scene beside = tests::straight_lane(4);
+    for (Cone& cone : beside.cones) cone.position.x() += 2.0;
+    beside.cones.push_back({1000, {-2.7, 1.4}});
+    beside.cones.push_back({1001, {-2.7, -1.4}});
+    options = {};
+    options.starting_pairs = 1;
+    const LaneAnswer one_pair = make_clc_detector(options)->detect(beside, tests::kNoTimeLimit);
+    EXPECT_EQ(one_pair.status, LaneStatus::stopped);
+    EXPECT_EQ(one_pair.stopped_by, StopReason::iterations);
+    EXPECT_TRUE(one_pair.enumeration->complete) << "of the pair that was tried";
+    EXPECT_EQ(make_clc_detector({})->detect(beside, tests::kNoTimeLimit).status, LaneStatus::found);
+}
+
+TEST(ClcDetector, AFoundLaneTellsWhetherALimitCutTheSearch) {
+    ClcOptions options;
+    const Scene easy = tests::straight_lane(4);
+    EXPECT_FALSE(make_clc_detector(options)->detect(easy, tests::kNoTimeLimit).stopped_by);
+    options.iteration_limit = 20;
+    const LaneAnswer few = make_clc_detector(options)->detect(easy, tests::kNoTimeLimit);
+    EXPECT_EQ(few.status, LaneStatus::found);
+    EXPECT_EQ(few.stopped_by, StopReason::iterations);
+    options.iteration_limit = std::numeric_limits<std::int64_t>::max();
+    const LaneAnswer late =
+        make_clc_detector(options)->detect(tests::strewn_scene(300, 30.0, 16.0), {.time_limit_ms = 300.0});
+    EXPECT_EQ(late.status, LaneStatus::found);
+    EXPECT_EQ(late.stopped_by, StopReason::time);
+}
+
+struct Crowd {
+    std::string name;
+    Scene scene;
+};
+
+std::vector<Crowd> crowds() {
+    return {
+        {"800 in 50 m x 50 m", tests::strewn_scene(800, 50.0, 50.0)},
+        {"2000 in 50 m x 50 m", tests::strewn_scene(2000, 50.0, 50.0)},
+        {"5000 in 50 m x 50 m", tests::strewn_scene(5000, 50.0, 50.0)},
+        {"5000 in 10 m x 10 m", tests::strewn_scene(5000, 10.0, 10.0)},
+        {"5000 at one place beside a lane", heap(5000, 0.0)},
+        {"5000 nearly at one place beside a lane", heap(5000, 1e-3)},
+        {"2000 in 50 m x 50 m, 1e6 m from the origin", tests::strewn_scene(2000, 50.0, 50.0, 7, {1e6, -1e6})},
+        {"500 in a strip", tests::strewn_scene(500, 300.0, 7.0)},
+        {"5000 over 1e6 m", tests::strewn_scene(5000, 1e6, 1e6)}};
+}
+
+TEST(ClcDetector, TheTimeLimitHoldsInEveryPart) {
+    for (const auto& [name, options] : variants()) {
+        const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
+        for (const Crowd& crowd : crowds()) {
+            for (const double limit_ms : {5.0, 50.0}) {
+                LaneAnswer answer;
+                EXPECT_LT(tests::overrun_ms(
+                              limit_ms, 100.0,
+                              [&] { answer = detector->detect(crowd.scene, {.time_limit_ms = limit_ms}); }),
+                          100.0)
+                    << name << ", " << crowd.name;
+                EXPECT_NE(answer.status, LaneStatus::error);
+            }
+        }
+    }
+}
+
+TEST(ClcDetector, TheMemoryLimitHoldsInGraphAndSearch) {
+    for (const auto& [name, base] : variants()) {
+        SCOPED_TRACE(name);
+        ClcOptions options = base;
+        options.memory_limit_bytes = 1U << 20U;
+        options.iteration_limit = std::numeric_limits<std::int64_t>::max();
+        const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
+        const LaneAnswer crowded = detector->detect(heap(2000, 12.0), tests::kNoTimeLimit);
+        EXPECT_EQ(crowded.status, LaneStatus::stopped) << "the graph alone is larger";
+        EXPECT_EQ(crowded.stopped_by, StopReason::memory);
+        const LaneAnswer endless =
+            detector->detect(tests::strewn_scene(120, 30.0, 16.0), tests::kNoTimeLimit);
+        EXPECT_EQ(endless.status, LaneStatus::found);
+        EXPECT_EQ(endless.stopped_by, StopReason::memory);
+    }
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "graph_search/clc/lane_constraints.hpp"
 
-#include "graph_search/clc/lane_closing.hpp"
-#include "graph_search/clc/next_vertex.hpp"
+#include "graph_search/clc/deciders.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
 #include "tests/support/testing.hpp"
 
@@ -39,28 +38,6 @@ class GrowingLane {
     std::array<std::vector<Point>, 2> vertices;
     LaneConstraints constraints;
 };
-
-TEST(LaneConstraints, AStraightLaneIsFeasibleAtEveryStep) {
-    GrowingLane lane({0, 2}, {0, -2});
-    EXPECT_TRUE(lane.state().feasible);
-    for (const double x : {4.0, 8.0, 12.0}) {
-        lane.push(kLeft, {x, 2});
-        EXPECT_TRUE(lane.state().feasible);
-        lane.push(kRight, {x, -2});
-        EXPECT_TRUE(lane.state().feasible);
-    }
-}
-
-TEST(LaneConstraints, ATurnOfARightAngleIsTooMuch) {
-    GrowingLane lane({0, 2}, {0, -2});
-    lane.push(kLeft, {4, 2});
-    lane.push(kLeft, {4, 5});
-    EXPECT_TRUE(lane.state().hopeless);
-    EXPECT_FALSE(lane.feasible_by_definition());
-    lane.pop(kLeft);
-    lane.push(kLeft, {4.5, 5});
-    EXPECT_FALSE(lane.state().hopeless);
-}
 
 // Lemma 2: the line between the last points crosses the left boundary until the right one catches up.
 TEST(LaneConstraints, ALineBetweenTheLastPointsThatCrossesCanBeUndone) {

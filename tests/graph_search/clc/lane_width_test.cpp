@@ -12,7 +12,6 @@ namespace {
 using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 
-constexpr double kWMin_m = 2.5;
 constexpr double kWMax_m = 6.5;
 
 TEST(LaneWidths, OfAStraightLaneAreItsWidth) {
@@ -176,48 +175,6 @@ TEST(OnlineLaneWidth, EqualsTheDefinitionAfterEveryStepOfARandomLane) {
             ASSERT_NEAR(width.variance(), variance_of(expected), 1e-6);
         }
     }
-}
-
-// Verdicts on a width that no further vertex can change.
-TEST(OnlineLaneWidth, VerdictsThatAreFixedNeverChange) {
-    int verdicts = 0;
-    int helped = 0;
-    for (unsigned seed = 0; seed < 300; ++seed) {
-        SCOPED_TRACE(seed);
-        RandomLane lane(seed);
-        OnlineLaneWidth width;
-        width.reset(lane.vertices(kLeft).front(), lane.vertices(kRight).front(), kWMax_m);
-        for (int step = 0; step < 40; ++step) {
-            std::array<std::vector<double>, 2> before;
-            for (const Side side : {kLeft, kRight}) {
-                for (std::size_t i = 0; i < lane.vertices(side).size(); ++i) {
-                    before[side].push_back(vertex_width_m(width, side, i));
-                }
-            }
-            const Side pushed = lane.random_side();
-            if (!lane.push(pushed)) continue;
-            width.push(pushed, lane.vertices(pushed).back());
-            for (const Side side : {kLeft, kRight}) {
-                for (std::size_t i = 0; i < before[side].size(); ++i) {
-                    const double now_m = vertex_width_m(width, side, i);
-                    ASSERT_LE(now_m, before[side][i]);
-                    if (side == pushed) {
-                        ASSERT_EQ(now_m, before[side][i]) << "own extension changed a width";
-                    }
-                    if (before[side][i] <= kWMin_m) {
-                        ASSERT_LE(now_m, kWMin_m);
-                    }
-                    if (before[side][i] < kWMax_m) {
-                        ASSERT_LT(now_m, kWMax_m);
-                    }
-                    if (before[side][i] >= kWMax_m && now_m < kWMax_m) ++helped;
-                    ++verdicts;
-                }
-            }
-        }
-    }
-    EXPECT_GT(verdicts, 10000);
-    EXPECT_GT(helped, 100);
 }
 
 }  // namespace

@@ -191,40 +191,34 @@ std::multiset<PathPairVertices> feasible_by_definition(const std::vector<Point>&
     return feasible;
 }
 
-// Theorem 4, with the backtracking that is proven: the search finds the whole feasible set, each path pair
-// once.
-TEST(PathPairEnumeration, IsCompleteOnRandomMaps) {
+/// The number of feasible pairs of random maps, and of those that the search misses.
+std::pair<std::size_t, std::size_t> feasible_and_missed(WidthBacktracking rule) {
     EnumerationRules rules;
-    rules.width_backtracking = WidthBacktracking::proven;
+    rules.width_backtracking = rule;
     std::size_t feasible = 0;
+    std::size_t missed = 0;
     for (unsigned seed = 0; seed < 150; ++seed) {
         SCOPED_TRACE(seed);
         const std::vector<Point> points = random_map(seed, 5 + seed % 5);
         const Result result = enumerate(points, rules);
         EXPECT_TRUE(result.complete);
+        const std::multiset<PathPairVertices> found = open_pairs(result);
         const std::multiset<PathPairVertices> expected = feasible_by_definition(points, rules);
-        ASSERT_EQ(open_pairs(result), expected);
+        EXPECT_TRUE(std::ranges::includes(expected, found));
         feasible += expected.size();
+        missed += expected.size() - found.size();
     }
     EXPECT_GT(feasible, 500u);
+    return {feasible, missed};
 }
 
-TEST(PathPairEnumeration, BacktrackingSavesIterationsAndLosesNothing) {
-    EnumerationRules rules;
-    rules.width_backtracking = WidthBacktracking::proven;
-    EnumerationRules without = rules;
-    without.backtracking = false;
-    std::int64_t saved = 0;
-    for (unsigned seed = 0; seed < 60; ++seed) {
-        SCOPED_TRACE(seed);
-        const std::vector<Point> points = random_map(seed, 5 + seed % 2);
-        const Result backtracking = enumerate(points, rules);
-        const Result exhaustive = enumerate(points, without);
-        ASSERT_EQ(open_pairs(backtracking), open_pairs(exhaustive));
-        ASSERT_LE(backtracking.iterations, exhaustive.iterations);
-        saved += exhaustive.iterations - backtracking.iterations;
-    }
-    EXPECT_GT(saved, 10000);
+// Theorem 4, with the backtracking that is proven: the search finds the whole feasible set, each path pair
+// once. Giving up lanes that both boundaries have left behind finds nothing infeasible and rarely misses one.
+TEST(PathPairEnumeration, IsCompleteOnRandomMapsAndMissesLittleOfWhatIsLeftBehind) {
+    EXPECT_EQ(feasible_and_missed(WidthBacktracking::proven).second, 0u);
+    const auto [feasible, missed] = feasible_and_missed(WidthBacktracking::left_behind);
+    EXPECT_LT(static_cast<double>(missed), 0.02 * static_cast<double>(feasible))
+        << missed << " of " << feasible;
 }
 
 /// By definition: for each step of a side after its start, the vertices not yet on that side that make a
@@ -250,7 +244,10 @@ std::size_t discrepancies(const std::vector<Point>& points, double d_max_m, cons
     return sum;
 }
 
-TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
+/// Expects of `found(points, seed)` the lanes that `keeps` on maps of which it keeps many and drops many.
+void expect_only(
+    const std::function<std::multiset<PathPairVertices>(const std::vector<Point>&, unsigned)>& found,
+    const std::function<bool(const std::vector<Point>&, unsigned, const PathPairVertices&)>& keeps) {
     EnumerationRules all;
     all.width_backtracking = WidthBacktracking::proven;
     std::size_t kept = 0;
@@ -258,18 +255,27 @@ TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
     for (unsigned seed = 0; seed < 100; ++seed) {
         SCOPED_TRACE(seed);
         const std::vector<Point> points = random_map(seed, 6 + seed % 4);
-        EnumerationRules few = all;
-        few.max_discrepancies = seed % 4;
-        std::multiset<PathPairVertices> expected;
-        for (const PathPairVertices& lane : open_pairs(enumerate(points, all))) {
-            const bool keeps = discrepancies(points, all.d_max_m, lane) <= few.max_discrepancies;
-            if (keeps) expected.insert(lane);
-            ++(keeps ? kept : left_out);
-        }
-        ASSERT_EQ(open_pairs(enumerate(points, few)), expected);
+        std::multiset<PathPairVertices> expected = open_pairs(enumerate(points, all));
+        left_out +=
+            std::erase_if(expected, [&](const PathPairVertices& lane) { return !keeps(points, seed, lane); });
+        kept += expected.size();
+        ASSERT_EQ(found(points, seed), expected);
     }
     EXPECT_GT(kept, 100u);
     EXPECT_GT(left_out, 100u);
+}
+
+TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
+    EnumerationRules few;
+    few.width_backtracking = WidthBacktracking::proven;
+    expect_only(
+        [&](const std::vector<Point>& points, unsigned seed) {
+            few.max_discrepancies = seed % 4;
+            return open_pairs(enumerate(points, few));
+        },
+        [&](const std::vector<Point>& points, unsigned seed, const PathPairVertices& lane) {
+            return discrepancies(points, few.d_max_m, lane) <= seed % 4;
+        });
 }
 
 /// By definition: whether no step goes to a vertex that `nearest` or more other neighbours are nearer than.
@@ -292,26 +298,14 @@ bool steps_are_near(const std::vector<Point>& points, double d_max_m, const Path
 TEST(PathPairEnumeration, LeavesOutStepsBeyondTheReach) {
     EnumerationRules rules;
     rules.width_backtracking = WidthBacktracking::proven;
-    std::size_t kept = 0;
-    std::size_t left_out = 0;
-    for (unsigned seed = 0; seed < 100; ++seed) {
-        SCOPED_TRACE(seed);
-        const std::vector<Point> points = random_map(seed, 6 + seed % 4);
-        const std::size_t nearest = 1 + seed % 3;
-        std::multiset<PathPairVertices> expected;
-        for (const PathPairVertices& lane : open_pairs(enumerate(points, rules))) {
-            const bool keeps = steps_are_near(points, rules.d_max_m, lane, nearest);
-            if (keeps) expected.insert(lane);
-            ++(keeps ? kept : left_out);
-        }
-        ASSERT_EQ(open_pairs(enumerate(points, rules, kNoLimit, nearest)), expected);
-    }
-    EXPECT_GT(kept, 100u);
-    EXPECT_GT(left_out, 100u);
+    const auto nearest = [](unsigned seed) { return std::size_t{1} + seed % 3; };
+    expect_only([&](const std::vector<Point>& points,
+                    unsigned seed) { return open_pairs(enumerate(points, rules, kNoLimit, nearest(seed))); },
+                [&](const std::vector<Point>& points, unsigned seed, const PathPairVertices& lane) {
+                    return steps_are_near(points, rules.d_max_m, lane, nearest(seed));
+                });
 }
 
-// Lemma 3, first case, does not hold as printed: the right boundary passes vertex 2 at more than 6.5 m, turns
-// back beyond the end of the left one, and comes within 6.5 m of vertex 2 after all.
 /// The second run meets only orders that the first one, from another start, has found.
 TEST(PathPairEnumeration, MayShareTheNextVerticesOfEarlierRuns) {
     for (unsigned seed = 0; seed < 20; ++seed) {
@@ -347,6 +341,8 @@ TEST(PathPairEnumeration, MayShareTheNextVerticesOfEarlierRuns) {
     }
 }
 
+// Lemma 3, first case, does not hold as printed: the right boundary passes vertex 2 at more than 6.5 m, turns
+// back beyond the end of the left one, and comes within 6.5 m of vertex 2 after all.
 TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {
     const std::vector<Point> points{{0.5, 1.9},    {0.3, -1.8},   {4.11, 3.9},   {7.02, 2.64},
                                     {2.76, -3.25}, {6.63, -2.21}, {10.58, 0.18}, {9.72, 2.98}};
@@ -356,25 +352,6 @@ TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {
     EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 1u);
     rules.width_backtracking = WidthBacktracking::left_behind;
     EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 0u);
-}
-
-// Giving up lanes that both boundaries have left behind finds nothing infeasible and rarely misses a lane.
-TEST(PathPairEnumeration, GivingUpWhatIsLeftBehindMissesLittle) {
-    EnumerationRules rules;
-    rules.width_backtracking = WidthBacktracking::left_behind;
-    std::size_t feasible = 0;
-    std::size_t missed = 0;
-    for (unsigned seed = 0; seed < 150; ++seed) {
-        SCOPED_TRACE(seed);
-        const std::vector<Point> points = random_map(seed, 5 + seed % 5);
-        const std::multiset<PathPairVertices> found = open_pairs(enumerate(points, rules));
-        const std::multiset<PathPairVertices> expected = feasible_by_definition(points, rules);
-        ASSERT_TRUE(std::ranges::includes(expected, found));
-        feasible += expected.size();
-        missed += expected.size() - found.size();
-    }
-    EXPECT_LT(static_cast<double>(missed), 0.02 * static_cast<double>(feasible))
-        << missed << " of " << feasible;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/straight_lane.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
@@ -20,6 +21,11 @@ RankNetWeights only_input(std::size_t input, float weight = 1.0F) {
     weights.hidden_bias = Eigen::VectorXf::Constant(1, 1000.0F);  // far below the unit's limit
     weights.output = Eigen::VectorXf::Ones(1);
     return weights;
+}
+
+double named(const LaneFeatures& features, std::string_view name) {
+    const auto names = lane_feature_names();
+    return features[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
 }
 
 TEST(PaperFeatures, OfALaneToFollowByHand) {
@@ -125,10 +131,7 @@ TEST(LaneGrowth, OfALaneToFollowByHand) {
     growth.push(graph, kLeft, 2);
     growth.push(graph, kRight, 3);
     const LaneFeatures features = growth.features();
-    const auto of = [&](std::string_view name) {
-        const auto names = lane_feature_names();
-        return features[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
-    };
+    const auto of = [&](std::string_view name) { return named(features, name); };
     EXPECT_DOUBLE_EQ(of("length_m"), 4.0);
     EXPECT_DOUBLE_EQ(of("cones_inside"), 1.0);
     EXPECT_DOUBLE_EQ(of("cones_beside"), 2.0) << "the one inside is 1 m off the left boundary too";
@@ -160,10 +163,7 @@ TEST(LaneGrowth, TellsTheNearPartFromTheRest) {
     }
     LaneFeatures features = growth.features();
     add_width_features(width, growth.near_vertices(), features);
-    const auto of = [&](std::string_view name) {
-        const auto names = lane_feature_names();
-        return features[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
-    };
+    const auto of = [&](std::string_view name) { return named(features, name); };
     // Steps begin at 0, 4, ..., 28 m; those from 0 to 20 m are near, six a side, and end at 24 m.
     EXPECT_EQ(of("near_vertices"), 14.0);
     EXPECT_EQ(of("near_sharpest_turn_rad"), 0.0);
@@ -179,33 +179,6 @@ TEST(LaneGrowth, TellsTheNearPartFromTheRest) {
     EXPECT_EQ(of("near_longest_segment_m"), 4.0);
     EXPECT_EQ(of("near_largest_segment_change_m"), 0.0);
     EXPECT_EQ(of("near_curvature_difference_rad_per_m"), 0.0);
-}
-
-TEST(RankNet, IsTwoLayersWithARectifierBetween) {
-    RankNetWeights weights;
-    weights.mean = Eigen::VectorXd::Ones(8);
-    weights.deviation = Eigen::VectorXd::Constant(8, 2.0);
-    weights.hidden = Eigen::MatrixXf::Zero(2, 8);
-    weights.hidden(0, 0) = 1.0F;
-    weights.hidden(1, 3) = -1.0F;
-    weights.hidden_bias.resize(2);
-    weights.hidden_bias << 0.5F, 0.0F;
-    weights.output.resize(2);
-    weights.output << 3.0F, 10.0F;
-    weights.output_bias = -1.0F;
-    // More lanes than one batch; only the first and the last differ from the mean.
-    LaneFeatures average;
-    average.fill(1.0);
-    std::vector<LaneFeatures> lanes(150, average);
-    lanes.front()[0] = 5.0;  // standardised 2: first unit 2.5, second 0
-    lanes.back()[3] = -3.0;  // standardised -2: first unit 0.5, second 2
-    lanes[70][3] = 9.0;      // standardised 4: the second unit is 0
-    std::vector<double> scores(lanes.size());
-    make_rank_net(weights)->score(lanes, scores);
-    EXPECT_DOUBLE_EQ(scores.front(), 3 * 2.5 - 1);
-    EXPECT_DOUBLE_EQ(scores.back(), 3 * 0.5 + 10 * 2 - 1);
-    EXPECT_DOUBLE_EQ(scores[70], 3 * 0.5 - 1);
-    EXPECT_DOUBLE_EQ(scores[71], 3 * 0.5 - 1);
 }
 
 /// Rests that do not fill a batch of units or lanes.
@@ -261,11 +234,7 @@ TEST(RankNet, RejectsWeightsThatDoNotFitByName) {
 }
 
 TEST(RankNet, DecidesWhichCandidateTheDetectorAnswers) {
-    Scene scene;
-    for (int i = 0; i < 5; ++i) {
-        scene.cones.push_back({2 * i, {1.0 + 4.0 * i, 1.8}});
-        scene.cones.push_back({2 * i + 1, {1.0 + 4.0 * i, -1.8}});
-    }
+    const Scene scene = tests::straight_lane(5, 0.0);
     const auto cones_with = [&](std::size_t feature, float weight) {
         ClcOptions options;
         options.ranking = make_rank_net(only_input(feature, weight));

@@ -3,43 +3,20 @@
 
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_moves.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
-#include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
 
 using tests::kNoTimeLimit;
-using tests::random_scene;
 using tests::straight_front_scene;
 
 Scene with_covariance(Scene scene, const PositionCovariance& covariance) {
     for (Cone& cone : scene.cones) cone.position_covariance = covariance;
     return scene;
-}
-
-void expect_same(const LaneAnswer& a, const LaneAnswer& b) {
-    EXPECT_EQ(a.status, b.status);
-    EXPECT_EQ(a.lane, b.lane);
-    EXPECT_EQ(a.confidence, b.confidence);
-    EXPECT_EQ(a.trusted_m, b.trusted_m);
-    ASSERT_TRUE(a.enumeration && b.enumeration);
-    EXPECT_EQ(a.enumeration->iterations, b.enumeration->iterations);
-}
-
-TEST(FrontCovariance, OfZeroIsNone) {
-    const auto front = make_front_detector(shipped_front_options());
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
-        SCOPED_TRACE(seed);
-        const Scene scene = random_scene(seed, 24);
-        const LaneAnswer without = front->detect(scene, kNoTimeLimit);
-        expect_same(front->detect(with_covariance(scene, {}), kNoTimeLimit), without);
-        // What a scene before had is forgotten.
-        (void)front->detect(with_covariance(scene, {0.3, 0.1, 0.2}), kNoTimeLimit);
-        expect_same(front->detect(scene, kNoTimeLimit), without);
-    }
 }
 
 TEST(FrontCovariance, ShortensTheTrustOfTheSameLane) {
@@ -67,8 +44,7 @@ TEST(FrontCovariance, ShortensTheTrustOfTheSameLane) {
 
 /// Covariances turn with the map.
 TEST(FrontCovariance, IsSeenFromTheCar) {
-    Scene scene;
-    scene.cones = {{0, {2.0, 1.8}}, {1, {2.0, -1.8}}};
+    Scene scene = tests::cones_at({{2.0, 1.8}, {2.0, -1.8}});
     scene.cones[0].position_covariance = {0.04, 0.01, 0.09};
     const double angle_rad = 0.7;
     Scene turned = scene;
@@ -101,9 +77,8 @@ TEST(FrontCovariance, IsSeenFromTheCar) {
 TEST(FrontCovariance, LetsCertainRulesGiveWay) {
     const FrontRules rules;
     const auto narrowest_m = [&](double sigma_m) {
-        Scene scene;
-        scene.cones = {{0, {2.0, 0.9}}, {1, {2.0, -0.9}}};
-        scene = with_covariance(scene, {0.0, 0.0, sigma_m * sigma_m});
+        const Scene scene =
+            with_covariance(tests::cones_at({{2.0, 0.9}, {2.0, -0.9}}), {0.0, 0.0, sigma_m * sigma_m});
         FrontMap map;
         map.build(scene);
         FrontStarts starts;
@@ -118,9 +93,9 @@ TEST(FrontCovariance, LetsCertainRulesGiveWay) {
 
     // The cone 2 takes a turn of 120 degrees at the left cone 0.
     const auto turns = [&](double sigma_m) {
-        Scene scene;
-        scene.cones = {{0, {4.0, 3.0}}, {1, {4.0, -3.0}}, {2, {4.0 - 2.0, 3.0 + 2.0 * std::sqrt(3.0)}}};
-        scene = with_covariance(scene, {sigma_m * sigma_m, 0.0, sigma_m * sigma_m});
+        const Scene scene =
+            with_covariance(tests::cones_at({{4.0, 3.0}, {4.0, -3.0}, {2.0, 3.0 + 2.0 * std::sqrt(3.0)}}),
+                            {sigma_m * sigma_m, 0.0, sigma_m * sigma_m});
         FrontMap map;
         map.build(scene);
         Vertex start_left = 0;

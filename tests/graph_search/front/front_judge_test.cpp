@@ -3,7 +3,6 @@
 #include "graph_search/front/front_judge.hpp"
 
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_evidence.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -44,7 +43,7 @@ class Judged {
             contenders.push_back({lane.parent, lane.score});
             search.cones(lane.parent, lanes.emplace_back());
         }
-        if (!contenders.empty()) judge.look(search, contenders);
+        if (!contenders.empty()) judge.compare(search, contenders);
     }
 
   private:

@@ -14,6 +14,7 @@ namespace conelane {
 namespace {
 
 using testing::ElementsAre;
+using testing::UnorderedElementsAre;
 using tests::random_front_weights;
 using tests::straight_front_scene;
 using Cones = std::array<std::vector<Vertex>, 2>;
@@ -27,6 +28,20 @@ FrontSearchOptions exhaustive() {
     options.merge = false;
     return options;
 }
+
+/// A search of the scene, run to its end unless told otherwise.
+struct Searched {
+    FrontCost cost;
+    FrontSearch search;
+    SearchBudget unlimited;
+
+    Searched(const Scene& scene, const FrontWeights& weights, const FrontSearchOptions& options,
+             bool to_the_end = true)
+        : cost(weights) {
+        search.begin(scene, cost, options);
+        if (to_the_end) search.run(unlimited);
+    }
+};
 
 /// Every lane of a scene with its score, by plain recursion. The rules about the whole lane are tested again,
 /// segment by segment.
@@ -104,11 +119,8 @@ TEST(FrontSearch, MeetsEveryLaneOnceAndFindsTheBest) {
         const Enumeration all(scene, weights, {});
         EXPECT_EQ(all.met, all.lanes.size()) << "a lane has one derivation";
 
-        FrontCost cost(weights);
-        FrontSearch search;
-        search.begin(scene, cost, exhaustive());
-        SearchBudget unlimited;
-        search.run(unlimited);
+        const Searched run(scene, weights, exhaustive());
+        const FrontSearch& search = run.search;
         EXPECT_FALSE(search.left_out());
         ASSERT_EQ(search.finished().size(), all.lanes.size());
         std::set<Cones> met;
@@ -126,15 +138,12 @@ TEST(FrontSearch, MeetsEveryLaneOnceAndFindsTheBest) {
 }
 
 TEST(FrontSearch, ALevelHoldsNoMoreThanTheBeam) {
-    const FrontWeights weights = random_front_weights(3);
     FrontSearchOptions options = exhaustive();
     options.beam_width = 2;
-    FrontCost cost(weights);
-    FrontSearch search;
-    search.begin(straight_front_scene(4), cost, options);
-    SearchBudget unlimited;
+    Searched run(straight_front_scene(4), random_front_weights(3), options, false);
+    FrontSearch& search = run.search;
     std::size_t full = 0;
-    while (search.advance(unlimited)) {
+    while (search.advance(run.unlimited)) {
         EXPECT_LE(search.level().size(), 2U);
         if (search.level().size() == 2) ++full;
     }
@@ -145,19 +154,15 @@ TEST(FrontSearch, ALevelHoldsNoMoreThanTheBeam) {
 // Far along the lane, only a third of the beam is kept. Both boundaries together advance 2.5 m a level, so 5
 // m along the lane are four levels.
 TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
-    const FrontWeights weights = random_front_weights(3);
     FrontSearchOptions options = exhaustive();
     options.beam_width = 4;
     options.far_m = 5.0;
-    FrontCost cost(weights);
-    FrontSearch search;
-    search.begin(straight_front_scene(5), cost, options);
-    SearchBudget unlimited;
+    Searched run(straight_front_scene(5), random_front_weights(3), options, false);
     std::size_t near = 0;
     std::size_t far = 0;
-    while (search.advance(unlimited)) {
-        std::size_t& widest = search.level_number() < 4 ? near : far;
-        widest = std::max(widest, search.level().size());
+    while (run.search.advance(run.unlimited)) {
+        std::size_t& widest = run.search.level_number() < 4 ? near : far;
+        widest = std::max(widest, run.search.level().size());
     }
     EXPECT_EQ(near, 4U);
     EXPECT_EQ(far, 2U);
@@ -165,12 +170,8 @@ TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
 
 /// The margin of the best move is its lead over the second one; that of any other is its lag behind the best.
 TEST(FrontSearch, OneMoveOfAStateHasAMargin) {
-    const FrontWeights weights = random_front_weights(3);
-    FrontCost cost(weights);
-    FrontSearch search;
-    search.begin(straight_front_scene(3), cost, exhaustive());
-    SearchBudget unlimited;
-    search.run(unlimited);
+    const Searched run(straight_front_scene(3), random_front_weights(3), exhaustive());
+    const FrontSearch& search = run.search;
     std::map<std::size_t, int> best_moves;
     for (std::size_t n = 0; n < search.nodes(); ++n) {
         const FrontSearch::Node& node = search.node(n);
@@ -189,13 +190,9 @@ TEST(FrontSearch, TheBeamIsNeverBetterAndMostlyAsGood) {
         const Scene scene = tests::random_scene(seed, 10);
         const FrontOptions shipped = shipped_front_options();
         const auto best = [&](const FrontSearchOptions& options) {
-            FrontCost cost(shipped.weights);
-            FrontSearch search;
-            search.begin(scene, cost, options);
-            SearchBudget unlimited;
-            search.run(unlimited);
-            search.sort_finished(1);
-            return search.finished().empty() ? -1e9 : search.finished().front().score;
+            Searched run(scene, shipped.weights, options);
+            run.search.sort_finished(1);
+            return run.search.finished().empty() ? -1e9 : run.search.finished().front().score;
         };
         const double of_all = best(exhaustive());
         if (of_all == -1e9) continue;
@@ -257,23 +254,37 @@ TEST(FrontStarts, PairsStandOnTheirSidesAndNotTooFarApart) {
     EXPECT_THAT(pairs, ElementsAre(std::pair(0U, 1U), std::pair(1U, 2U)));
 }
 
+/// The left cone 0 and the right cone 1 begin a lane; a test adds the others, with ids from 2 on.
+class Front {
+  public:
+    explicit Front(const std::vector<Point>& others) {
+        scene_.cones = {{0, {2.0, 1.8}}, {1, {2.1, -1.8}}};
+        for (const Point& other : others)
+            scene_.cones.push_back({static_cast<ConeId>(scene_.cones.size()), other});
+        map_.build(scene_);
+        state = start_state(map_, 0, 1);
+    }
+
+    /// Ids of the cones to which the left side may continue.
+    std::vector<ConeId> list(const FrontRules& rules) {
+        moves.list(map_, state, kLeft, rules);
+        std::vector<ConeId> ids;
+        for (const FrontMove& move : moves.extensions)
+            ids.push_back(scene_.cones[map_.scene_index(move.to)].id);
+        return ids;
+    }
+
+    FrontState state;
+    FrontMoves moves;
+
+  private:
+    Scene scene_;
+    FrontMap map_;
+};
+
 TEST(FrontMoves, LongSegmentsBridgeAMissedConeButNotOneThatIsThere) {
-    Scene scene = straight_front_scene(4);
-    const auto leads_on = [&](double to_x_m) {
-        FrontMap map;
-        map.build(scene);
-        const FrontState state = start_state(map, 0, 1);
-        FrontMoves moves;
-        moves.list(map, state, kLeft, {});
-        return std::ranges::any_of(moves.extensions, [&](const FrontMove& move) {
-            return map.position(move.to).isApprox(Point(to_x_m, 1.8));
-        });
-    };
-    EXPECT_TRUE(leads_on(6.0));
-    EXPECT_FALSE(leads_on(10.0)) << "the cone between stands on the way";
-    std::erase_if(scene.cones, [](const Cone& cone) { return cone.id == 1; });
-    EXPECT_TRUE(leads_on(10.0));
-    EXPECT_FALSE(leads_on(14.0)) << "12 m are too far";
+    EXPECT_THAT(Front({{6.0, 1.8}, {10.0, 1.8}}).list({}), ElementsAre(2)) << "3 stands behind 2";
+    EXPECT_THAT(Front({{10.0, 1.8}, {14.0, 1.8}}).list({}), ElementsAre(2)) << "12 m are too far";
 }
 
 TEST(FrontMoves, TheOtherBoundaryKeepsItsRoom) {
@@ -291,6 +302,34 @@ TEST(FrontMoves, TheOtherBoundaryKeepsItsRoom) {
     for (const FrontMove& move : moves.extensions) to.insert(scene.cones[map.scene_index(move.to)].id);
     EXPECT_TRUE(to.contains(8));
     EXPECT_FALSE(to.contains(7));
+}
+
+/// The cone 3 is 8.1 m from the only cone of the right side.
+TEST(FrontMoves, ASideThatGoesOnAloneStaysNearTheOtherOne) {
+    Front front({{6.0, 1.8}, {6.5, 5.0}});
+    EXPECT_THAT(front.list({}), UnorderedElementsAre(2, 3));
+    front.state.ends[kRight].stopped = true;
+    EXPECT_THAT(front.list({}), ElementsAre(2));
+}
+
+TEST(FrontMoves, OfTheShortSegmentsTheShortestAreListedAndTheRestIsMentioned) {
+    Front front({{6.5, 2.2}, {6.0, 1.8}});
+    FrontRules rules;
+    rules.short_segments = 1;
+    EXPECT_THAT(front.list(rules), ElementsAre(3));
+    EXPECT_TRUE(front.moves.left_out);
+    rules.short_segments = 2;
+    EXPECT_THAT(front.list(rules), ElementsAre(3, 2));
+    EXPECT_FALSE(front.moves.left_out);
+}
+
+TEST(FrontMoves, OfTheLongSegmentsTheStraightestAreListed) {
+    Front front({{9.5, 4.0}, {10.0, 1.8}, {9.0, -0.2}});
+    FrontRules rules;
+    rules.long_segments = 1;
+    EXPECT_THAT(front.list(rules), ElementsAre(3));
+    rules.long_segments = 2;
+    EXPECT_THAT(front.list(rules), ElementsAre(3, 4));
 }
 
 TEST(FrontMap, AnglesAreExactToTwentyMillionths) {
@@ -342,9 +381,9 @@ TEST(FrontMap, WhereConesAreFewWaysGoFarther) {
     EXPECT_FLOAT_EQ(farthest_m(), 11.4F);
 }
 
-TEST(FrontNetwork, EqualsItsFormula) {
-    const FrontWeights weights = random_front_weights(3);
-    const FrontNetworkWeights& w = weights.stop;
+/// Of several rows with the same first inputs; the test after this one has the formula.
+TEST(FrontNetwork, ScoresRowsAsItScoresAllTheirInputs) {
+    const FrontNetworkWeights w = random_front_weights(3).stop;
     const FrontNetwork network(w);
     boost::random::mt19937_64 random(5);
     boost::random::uniform_real_distribution<float> any(-1.0F, 1.0F);
@@ -361,15 +400,6 @@ TEST(FrontNetwork, EqualsItsFormula) {
             std::vector<float> inputs = first;
             const auto from = rest.begin() + static_cast<std::ptrdiff_t>(row * (w.inputs - 7));
             inputs.insert(inputs.end(), from, from + static_cast<std::ptrdiff_t>(w.inputs - 7));
-            double expected = w.output_bias;
-            for (std::size_t i = 0; i < w.inputs; ++i) expected += w.linear[i] * inputs[i];
-            for (std::size_t unit = 0; unit < kFrontUnits; ++unit) {
-                double sum = w.hidden_bias[unit];
-                for (std::size_t i = 0; i < w.inputs; ++i)
-                    sum += w.hidden[i * kFrontUnits + unit] * inputs[i];
-                expected += w.output[unit] * std::max(0.0, sum);
-            }
-            EXPECT_NEAR(scores[row], expected, 1e-4);
             EXPECT_NEAR(network.score(inputs), scores[row], 1e-4);
         }
     }
@@ -403,11 +433,18 @@ LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = tests::kNo
     return make_front_detector(shipped_front_options())->detect(scene, limits);
 }
 
-TEST(FrontDetector, FollowsAStraight) {
-    const LaneAnswer answer = detect(straight_front_scene(6));
-    ASSERT_EQ(answer.status, LaneStatus::found);
-    EXPECT_THAT(answer.lane.left, ElementsAre(0, 1, 2, 3, 4, 5));
-    EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
+/// The lane of a straight of six cones a side, without or with other cones.
+TEST(FrontDetector, FollowsAStraightOverAMissedConeAndPastFalseOnes) {
+    const Lane whole{{0, 1, 2, 3, 4, 5}, {100, 101, 102, 103, 104, 105}};
+    const Scene scene = straight_front_scene(6);
+    EXPECT_EQ(detect(scene).lane, whole);
+    Scene without = scene;
+    std::erase_if(without.cones, [](const Cone& cone) { return cone.id == 3; });
+    EXPECT_EQ(detect(without).lane, (Lane{{0, 1, 2, 4, 5}, whole.right}));
+    Scene with = scene;
+    with.cones.push_back({50, {12.0, 3.4}});
+    with.cones.push_back({51, {8.0, -0.2}});
+    EXPECT_EQ(detect(with).lane, whole);
 }
 
 /// A hairpin to the left: 8 m straight, then half a circle of the radius to the centre line, then back.
@@ -451,25 +488,6 @@ TEST(FrontDetector, DrivesAHairpin) {
     }
 }
 
-TEST(FrontDetector, StepsOverAMissedCone) {
-    Scene scene = straight_front_scene(6);
-    std::erase_if(scene.cones, [](const Cone& cone) { return cone.id == 3; });
-    const LaneAnswer answer = detect(scene);
-    ASSERT_EQ(answer.status, LaneStatus::found);
-    EXPECT_THAT(answer.lane.left, ElementsAre(0, 1, 2, 4, 5));
-    EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
-}
-
-TEST(FrontDetector, LeavesAFalseConeAside) {
-    Scene scene = straight_front_scene(6);
-    scene.cones.push_back({50, {12.0, 3.4}});
-    scene.cones.push_back({51, {8.0, -0.2}});
-    const LaneAnswer answer = detect(scene);
-    ASSERT_EQ(answer.status, LaneStatus::found);
-    EXPECT_THAT(answer.lane.left, ElementsAre(0, 1, 2, 3, 4, 5));
-    EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
-}
-
 // Far ends are dropped if the other side is more than 6.5 m away; a lane that is wide everywhere would be
 // lost completely.
 TEST(FrontDetector, AWideLaneIsALane) {
@@ -491,52 +509,10 @@ TEST(FrontDetector, AWideLaneIsALane) {
     EXPECT_THAT(cones[kRight], testing::SizeIs(5));
 }
 
-TEST(FrontDetector, AMirroredSceneHasTheMirroredLane) {
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
-        Scene scene = tests::random_scene(seed, 24);
-        scene.pose.yaw_rad = 0.0;
-        Scene mirrored = scene;
-        for (Cone& cone : mirrored.cones) cone.position.y() = -cone.position.y();
-        const Lane lane = detect(scene).lane;
-        const Lane other = detect(mirrored).lane;
-        EXPECT_EQ(lane.left, other.right);
-        EXPECT_EQ(lane.right, other.left);
-    }
-}
-
-TEST(FrontDetector, NeitherOrderNorIdsOfTheConesMatter) {
-    boost::random::mt19937_64 random(11);
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
-        SCOPED_TRACE(seed);
-        const Scene scene = tests::random_scene(seed, 30);
-        Scene permuted = scene;
-        std::map<ConeId, ConeId> old_id;
-        for (std::size_t i = permuted.cones.size(); i > 1; --i) {
-            std::swap(permuted.cones[i - 1],
-                      permuted.cones[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
-        }
-        for (std::size_t i = 0; i < permuted.cones.size(); ++i) {
-            const auto id = static_cast<ConeId>(1000 - 7 * static_cast<int>(i));
-            old_id[id] = permuted.cones[i].id;
-            permuted.cones[i].id = id;
-        }
-        Lane lane = detect(permuted).lane;
-        for (std::vector<ConeId>* side : {&lane.left, &lane.right}) {
-            for (ConeId& id : *side) id = old_id.at(id);
-        }
-        EXPECT_EQ(lane, detect(scene).lane);
-    }
-}
-
 TEST(FrontDetector, ADeadlineGivesTheBestLaneSoFar) {
     Scene scene = straight_front_scene(14);
-    boost::random::mt19937_64 random(2);
-    boost::random::uniform_real_distribution<double> ahead(0.0, 50.0);
-    boost::random::uniform_real_distribution<double> left(-25.0, 25.0);
-    for (int i = 0; i < 300; ++i) {
-        const double x = ahead(random);
-        scene.cones.push_back({1000 + i, {x, left(random)}});
-    }
+    for (const Cone& cone : tests::strewn_scene(300, 50.0, 50.0).cones)
+        scene.cones.push_back({1000 + cone.id, cone.position});
     const auto detector = make_front_detector(shipped_front_options());
     bool cut_off = false;
     for (double limit_ms = 0.1; limit_ms < 400.0; limit_ms *= 1.3) {

@@ -4,11 +4,12 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/scene.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/graph/timed_growth.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
@@ -24,12 +25,6 @@ LaneGraphProblem dense_problem() {
         }
     }
     return make_problem(scene, {});
-}
-
-std::vector<char> near_cones(const ArcGraph& graph) {
-    std::vector<char> near;
-    for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
-    return near;
 }
 
 TEST(PathPairClock, IsCheckedWhileTheArcGraphIsMade) {
@@ -54,7 +49,7 @@ TEST(PathPairClock, IsCheckedWhileTheResidualGraphIsMade) {
     SearchClock no_limit;
     ArcGraph graph;
     ASSERT_TRUE(graph.build(problem, no_limit));
-    const std::vector<char> near = near_cones(graph);
+    const std::vector<char> near = tests::near_to_far(graph).kinds[0].start;
     tests::FakeSearchClock clock;
     ResidualGraph whole;
     EXPECT_TRUE(whole.assign(graph, near, clock));

@@ -18,6 +18,7 @@
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/cones_at.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 #include "tests/support/testing.hpp"
@@ -31,14 +32,9 @@ constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 struct Frontiers {
     Frontiers(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
         graph.build(problem, clock);
-        LegSystem::Kind& kind = system.kinds[0];
-        for (int cone = 0; cone < graph.cone_count(); ++cone) {
-            kind.start.push_back(graph.near(cone) ? 1 : 0);
-            kind.end.push_back(graph.near(cone) ? 0 : 1);
-        }
-        residual.assign(graph, kind.start, clock);
+        system = tests::near_to_far(graph);
+        residual.assign(graph, system.kinds[0].start, clock);
         decisions.reset(graph);
-        relaxation.bind(graph, system, cliques, decisions, clock);
         boost::random::mt19937_64 random(seed);
         for (int cone = 0; cone < graph.cone_count(); ++cone) {
             multipliers.cone.push_back(boost::random::uniform_real_distribution<double>(0.0, 0.5)(random));
@@ -46,9 +42,7 @@ struct Frontiers {
         leg_bound = relaxation.evaluate(residual, multipliers);
         edges.assign(graph, residual, clock);
         dominated.find(residual, relaxation, edges, true, clock);
-        frontiers.bind(relaxation, clock);
-        search.bind(graph, relaxation, incumbent, clock);
-        incumbent.reset(graph, 1e6);
+        incumbent.reset(1e6, 1e-9);
     }
 
     bool build(double limit = kUnreachable, std::size_t max_frontiers = kAny) {
@@ -69,8 +63,8 @@ struct Frontiers {
     }
 
     FrontierSearch::Outcome run(std::size_t width, std::size_t max_labels, bool with_detours = true) {
-        tables.find(frontiers, edges, incumbent.cutoff() + relaxation.offset(), with_detours, clock);
-        return search.run(frontiers, edges, tables, {1e-9, width, max_labels});
+        tables.find(incumbent.cutoff() + relaxation.offset(), with_detours);
+        return search.run({width, max_labels});
     }
 
     /// Every leg from a near to a far cone, by plain recursion.
@@ -80,30 +74,30 @@ struct Frontiers {
         const std::function<void(int)> extend = [&](int a) {
             for (const int other : leg) {
                 if (graph.incompatible(residual.edge(other), residual.edge(a)) ||
-                    residual.tail[at(other)] == residual.head[at(a)]) {
+                    residual.tail[to_index(other)] == residual.head[to_index(a)]) {
                     return;
                 }
             }
             leg.push_back(a);
-            if (!graph.near(residual.head[at(a)])) all.push_back(leg);
-            for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
-                extend(residual.out_arc[at(p)]);
+            if (!graph.near(residual.head[to_index(a)])) all.push_back(leg);
+            for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p) {
+                extend(residual.out_arc[to_index(p)]);
             }
             leg.pop_back();
         };
         for (int a = 0; a < residual.size(); ++a) {
-            if (graph.near(residual.tail[at(a)])) extend(a);
+            if (graph.near(residual.tail[to_index(a)])) extend(a);
         }
         return all;
     }
 
     /// No cone and no incompatible edges in common.
     [[nodiscard]] bool are_pair(const std::vector<int>& first, const std::vector<int>& second) const {
-        std::set<int> cones{residual.tail[at(first.front())]};
-        for (const int a : first) cones.insert(residual.head[at(a)]);
-        if (cones.contains(residual.tail[at(second.front())])) return false;
+        std::set<int> cones{residual.tail[to_index(first.front())]};
+        for (const int a : first) cones.insert(residual.head[to_index(a)]);
+        if (cones.contains(residual.tail[to_index(second.front())])) return false;
         return std::ranges::all_of(second, [&](int b) {
-            return !cones.contains(residual.head[at(b)]) && std::ranges::none_of(first, [&](int a) {
+            return !cones.contains(residual.head[to_index(b)]) && std::ranges::none_of(first, [&](int a) {
                 return graph.incompatible(residual.edge(a), residual.edge(b));
             });
         });
@@ -114,8 +108,6 @@ struct Frontiers {
         return static_cast<int>(found - residual.arc.begin());
     }
 
-    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
     LaneGraphProblem problem;
     tests::FakeSearchClock clock;
     ArcGraph graph;
@@ -124,14 +116,14 @@ struct Frontiers {
     CliquePool cliques;
     Decisions decisions;
     Multipliers multipliers;
-    PairRelaxation relaxation;
+    PairRelaxation relaxation{graph, system, cliques, decisions, clock};
     double leg_bound = 0.0;
     EdgeSets edges;
     DominatedEdges dominated;
-    FrontierGraph frontiers;
-    Incumbent incumbent;
-    OnwardTables tables;
-    FrontierSearch search;
+    FrontierGraph frontiers{relaxation, clock};
+    Incumbent incumbent{graph};
+    OnwardTables tables{frontiers, edges, clock};
+    FrontierSearch search{graph, relaxation, incumbent, frontiers, edges, tables, clock};
 };
 
 LaneGraphProblem random_problem(std::uint64_t seed, std::size_t cones = 9) {
@@ -201,24 +193,24 @@ TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
     std::vector<double> label;
     std::vector<int> before;
     std::vector<int> cycles;
-    LegBounds bounds;
+    LegBounds bounds(clock);
     EXPECT_TRUE(bounds.forward(residual, nothing, nothing, label, before, cycles));
     EXPECT_EQ(label, nothing);
 }
 
 /// A leg could end only on 4 -> 6, which is left out, so no leg ends.
 TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
-    const Frontiers s(tests::straight_lane_problem(), 1);
+    Frontiers s(tests::straight_lane_problem(), 1);
     const auto count = static_cast<std::size_t>(s.residual.size());
-    const auto last = static_cast<std::size_t>(s.arc(4, 6));
+    const auto last = to_index(s.arc(4, 6));
     std::vector<double> end(count, kUnreachable);
     end[last] = 0.0;
     std::vector<char> usable(count, 1);
     std::vector<double> label;
-    LegBounds bounds;
+    LegBounds bounds(s.clock);
     const std::vector<double> nothing(count, 0.0);
     bounds.backward(s.residual, nothing, end, usable, label);
-    EXPECT_EQ(label[static_cast<std::size_t>(s.arc(2, 4))], 0.0);
+    EXPECT_EQ(label[to_index(s.arc(2, 4))], 0.0);
     usable[last] = 0;
     bounds.backward(s.residual, nothing, end, usable, label);
     EXPECT_EQ(label, std::vector<double>(count, kUnreachable));
@@ -243,11 +235,10 @@ TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
     parameters.d_max = 16.0;
     Frontiers s(make_problem(scene, parameters), 1);
     s.relaxation.evaluate_backward(s.residual);
-    SecondLegBound second;
-    second.reset(s.graph, s.clock);
-    PairCompletion completion;
-    completion.bind(s.graph, s.relaxation, s.incumbent, second, s.clock);
-    completion.complete(s.residual, 0, std::vector<int>{s.arc(0, 1), s.arc(1, 2)}, 1e-9, 0);
+    SecondLegBound second(s.graph, s.clock);
+    second.reset();
+    PairCompletion completion(s.graph, s.relaxation, s.incumbent, second, s.clock);
+    completion.complete(s.residual, 0, std::vector<int>{s.arc(0, 1), s.arc(1, 2)}, 0);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), -5.0 + 0.4 * std::pow(0.4 / 1.7, 4), 1e-9);
 }
@@ -383,7 +374,7 @@ TEST(PathPairFrontierGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
         EXPECT_LE(s.frontiers.size(), all);
         fewer += s.frontiers.size() < all ? 1 : 0;
         EXPECT_GE(s.frontiers.find_onward(limit), bound - 1e-9);
-        s.incumbent.reset(s.graph, cutoff);
+        s.incumbent.reset(cutoff, 1e-9);
         s.run(FrontierSearch::kAnyWidth, kAny);
         EXPECT_NEAR(s.incumbent.cutoff(), *best, 1e-9);
     }
@@ -405,7 +396,7 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
         if (bound == kUnreachable) continue;
         const double gap = 1.5;
         s.frontiers.drop(bound + gap);
-        s.tables.find(s.frontiers, s.edges, bound + gap, true, s.clock);
+        s.tables.find(bound + gap, true);
         for (int f = 0; f < s.frontiers.size(); ++f) {
             const double onward = s.frontiers.onward(f);
             std::vector<int> arcs;
@@ -438,9 +429,7 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
 /// A beam of one beginning at each arc follows both boundaries of a straight lane.
 TEST(PathPairFrontierBeam, FindsTheStraightLane) {
     Frontiers s(tests::straight_lane_problem(), 1);
-    FrontierBeam beam;
-    beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
-    beam.run(s.residual, s.edges, 1e-9, 1);
+    FrontierBeam(s.graph, s.relaxation, s.incumbent, s.edges, s.clock).run(s.residual, 1);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(s.problem, {}).objective, 1e-9);
 }
@@ -453,9 +442,7 @@ TEST(PathPairFrontierBeam, FindsLaneGraphsAndOftenTheBest) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Frontiers s(random_problem(seed), seed);
         const RldReport best = exhaustive->solve(s.problem, {});
-        FrontierBeam beam;
-        beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
-        beam.run(s.residual, s.edges, 1e-9, 8);
+        FrontierBeam(s.graph, s.relaxation, s.incumbent, s.edges, s.clock).run(s.residual, 8);
         if (!best.objective) {
             EXPECT_FALSE(s.incumbent.found());
             continue;
@@ -506,16 +493,15 @@ TEST(PathPairFrontierSearch, StopsAtEveryCheckOfTheClock) {
         Frontiers s(random_problem(seed, 24), seed);
         ASSERT_TRUE(s.build());
         if (s.frontiers.find_onward(kUnreachable) == kUnreachable) continue;
-        s.tables.find(s.frontiers, s.edges, 1e6, true, s.clock);
+        s.tables.find(1e6, true);
         bool struck = true;
         for (int strike = 1; struck && strike < 5; ++strike) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike);
             tests::FakeSearchClock clock(strike);
-            s.incumbent.reset(s.graph, 1e6);
-            s.search.bind(s.graph, s.relaxation, s.incumbent, clock);
-            const FrontierSearch::Outcome outcome =
-                s.search.run(s.frontiers, s.edges, s.tables, {1e-9, FrontierSearch::kAnyWidth, kAny});
-            struck = clock.struck();
+            s.incumbent.reset(1e6, 1e-9);
+            FrontierSearch search(s.graph, s.relaxation, s.incumbent, s.frontiers, s.edges, s.tables, clock);
+            const FrontierSearch::Outcome outcome = search.run({FrontierSearch::kAnyWidth, kAny});
+            struck = clock.expired();
             ASSERT_EQ(outcome,
                       struck ? FrontierSearch::Outcome::stopped : FrontierSearch::Outcome::exhausted);
             stopped_on_the_way += struck && strike > 1 ? 1 : 0;

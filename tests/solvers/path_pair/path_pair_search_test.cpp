@@ -2,9 +2,8 @@
 // multipliers.
 
 #include "solvers/path_pair/bound/multipliers.hpp"
-#include "solvers/path_pair/search/multiplier_stages.hpp"
 #include "solvers/path_pair/search/node.hpp"
-#include "solvers/path_pair/search/node_queue.hpp"
+#include "solvers/path_pair/search/node_ascent.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/testing.hpp"
@@ -27,9 +26,9 @@ TEST(PathPairSearchClock, ChecksAfterAFixedAmountOfWork) {
 TEST(PathPairSearchClock, StaysExpired) {
     tests::FakeSearchClock clock(2);
     EXPECT_FALSE(clock.out_of_time());
-    EXPECT_FALSE(clock.struck());
+    EXPECT_FALSE(clock.expired());
     EXPECT_TRUE(clock.out_of_time());
-    EXPECT_TRUE(clock.struck());
+    EXPECT_TRUE(clock.expired());
     EXPECT_TRUE(clock.out_of_time()) << "though the deadline says otherwise now";
     EXPECT_TRUE(clock.tick(1));
     EXPECT_TRUE(clock.out_of_time(1));

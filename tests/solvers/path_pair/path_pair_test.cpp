@@ -11,6 +11,7 @@
 #include "tests/support/agreement.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/learned_costs.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"
@@ -173,27 +174,23 @@ TEST(PathPair, ADeadlineAtAnyCheckMakesNoFalseProof) {
         SearchClock no_limit;
         ArcGraph graph;
         graph.build(problem, no_limit);
-        LegSystem system;
-        for (int cone = 0; cone < graph.cone_count(); ++cone) {
-            system.kinds[0].start.push_back(graph.near(cone) ? 1 : 0);
-            system.kinds[0].end.push_back(graph.near(cone) ? 0 : 1);
-        }
-        Incumbent incumbent;
+        const LegSystem system = tests::near_to_far(graph);
+        Incumbent incumbent(graph);
         PathPairOptions options;
         if (run++ % 2 == 1) options = {.search_frontiers = false, .root_steps = 10, .node_steps = 5};
-        BranchAndBound search(graph, incumbent, options);
+        tests::FakeSearchClock clock;
+        BranchAndBound search(graph, system, incumbent, options, clock);
         constexpr double kTolerance = 1e-9;
-        tests::FakeSearchClock patient;
-        incumbent.reset(graph, 0.0);
-        ASSERT_TRUE(search.run(system, kTolerance, patient).complete);
-        const int looks = patient.looks();
+        incumbent.reset(0.0, kTolerance);
+        ASSERT_TRUE(search.run().complete);
+        const int looks = clock.looks();
         const double optimum = incumbent.cutoff();
         double bound_before = -kUnreachable;
         for (int strike = 1; strike <= looks + 1; strike += 1 + looks / 200) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike << " of " << looks);
-            tests::FakeSearchClock clock(strike);
-            incumbent.reset(graph, 0.0);
-            const BranchAndBound::Outcome outcome = search.run(system, kTolerance, clock);
+            clock.restart(strike);
+            incumbent.reset(0.0, kTolerance);
+            const BranchAndBound::Outcome outcome = search.run();
             EXPECT_GE(incumbent.cutoff(), optimum - kTolerance);
             EXPECT_LE(outcome.bound, optimum + kTolerance);
             EXPECT_GE(outcome.bound, bound_before - 1e-6);
@@ -283,11 +280,11 @@ TEST(PathPairCertificate, RestsOnEveryShapeCost) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         RldParameters parameters = with_shape_costs({});
-        parameters.k_edge = seed % 4 == 3 ? 3.0 : 0.0;
+        parameters.nearest_of_edge = seed % 4 == 3 ? 3.0 : 0.0;
         std::vector<RldParameters> cheaper(refused.size(), parameters);
-        cheaper[0].w_u = 0.0;
-        cheaper[1].w_v = 0.0;
-        cheaper[2].w_n *= 1.5;
+        cheaper[0].unevenness_weight = 0.0;
+        cheaper[1].facing_weight = 0.0;
+        cheaper[2].near_end_weight *= 1.5;
         const Scene scene = tests::random_scene(seed, 16);
         const BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
         const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
@@ -334,8 +331,8 @@ TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
         parameters.d_gap = 9.0;
         parameters.d_clear = 0.5;
         parameters.theta_gap = 0.5;
-        parameters.k_edge = static_cast<double>(seed % 6);
-        parameters.k_gap = static_cast<double>(seed % 9);
+        parameters.nearest_of_edge = static_cast<double>(seed % 6);
+        parameters.nearest_of_gap = static_cast<double>(seed % 9);
         parameters.d_side = seed % 3 == 0 ? 2.5 : 0.0;
         parameters.w_color = 0.3;
         parameters.use_confidence = true;

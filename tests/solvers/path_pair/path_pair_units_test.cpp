@@ -1,13 +1,13 @@
 // The units of path-pair: valid bounds, valid cliques, and the same legs as brute force finds.
 
 #include "conelane/lane_graph_problem.hpp"
-#include "solvers/path_pair/bound/clique_separation.hpp"
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/leg_search.hpp"
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "tests/support/cones_at.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"
@@ -22,9 +22,7 @@ struct SceneWithMultipliers {
     explicit SceneWithMultipliers(std::uint64_t seed, std::size_t cones = 9) {
         const Scene scene = tests::random_scene(seed, cones);
         graph.build(make_problem(scene, {}), clock);
-        std::vector<char> near;
-        for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
-        residual.assign(graph, near, clock);
+        residual.assign(graph, tests::near_to_far(graph).kinds[0].start, clock);
         multipliers.cone.assign(cones, 0.0);
         boost::random::mt19937_64 random(seed);
         for (double& multiplier : multipliers.cone) {
@@ -35,10 +33,9 @@ struct SceneWithMultipliers {
             start.clear();
             end.clear();
             for (int a = 0; a < residual.size(); ++a) {
-                const std::size_t at = static_cast<std::size_t>(a);
+                const std::size_t at = to_index(a);
                 const int tail = residual.tail[at];
-                start.push_back(graph.near(tail) ? multipliers.cone[static_cast<std::size_t>(tail)]
-                                                 : kUnreachable);
+                start.push_back(graph.near(tail) ? multipliers.cone[to_index(tail)] : kUnreachable);
                 end.push_back(graph.near(residual.head[at]) ? kUnreachable : 0.25);
             }
             if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
@@ -51,10 +48,10 @@ struct SceneWithMultipliers {
     /// Every simple leg without incompatible edges, by plain recursion.
     void for_each_leg(const std::function<void(const std::vector<int>&, double)>& visit) const {
         std::vector<int> leg;
-        std::vector<char> used(static_cast<std::size_t>(graph.cone_count()), 0);
+        std::vector<char> used(to_index(graph.cone_count()), 0);
         const std::function<void(int, double)> extend = [&](int a, double cost) {
-            const std::size_t at = static_cast<std::size_t>(a);
-            const std::size_t head = static_cast<std::size_t>(residual.head[at]);
+            const std::size_t at = to_index(a);
+            const std::size_t head = to_index(residual.head[at]);
             if (used[head] != 0) return;
             for (const int other : leg) {
                 if (graph.incompatible(residual.edge(other), residual.edge(a))) return;
@@ -64,18 +61,17 @@ struct SceneWithMultipliers {
             leg.push_back(a);
             if (end[at] < kUnreachable) visit(leg, cost + end[at]);
             for (int p = residual.out_start[at]; p < residual.out_start[at + 1]; ++p) {
-                extend(residual.out_arc[static_cast<std::size_t>(p)],
-                       cost + residual.out_cost[static_cast<std::size_t>(p)]);
+                extend(residual.out_arc[to_index(p)], cost + residual.out_cost[to_index(p)]);
             }
             leg.pop_back();
             used[head] = 0;
         };
         for (int a = 0; a < residual.size(); ++a) {
-            const std::size_t at = static_cast<std::size_t>(a);
+            const std::size_t at = to_index(a);
             if (start[at] == kUnreachable) continue;
-            used[static_cast<std::size_t>(residual.tail[at])] = 1;
+            used[to_index(residual.tail[at])] = 1;
             extend(a, start[at]);
-            used[static_cast<std::size_t>(residual.tail[at])] = 0;
+            used[to_index(residual.tail[at])] = 0;
         }
     }
 
@@ -84,7 +80,7 @@ struct SceneWithMultipliers {
     ResidualGraph residual;
     CliquePool cliques;
     Multipliers multipliers;
-    LegBounds bounds;
+    LegBounds bounds{clock};
     std::vector<double> edge_multiplier, reduced, start, end, forward, backward;
     std::vector<int> before, cycle;
     int raised = 0;
@@ -95,7 +91,7 @@ class Offers {
     Offers(const Scene& scene, const RldParameters& parameters) {
         SearchClock clock;
         graph.build(make_problem(scene, parameters), clock);
-        incumbent.reset(graph, 0.0);
+        incumbent.reset(0.0, 0.0);
     }
     bool offer(const std::vector<int>& first_cones, const std::vector<int>& second_cones) {
         return incumbent.offer(leg(first_cones), leg(second_cones));
@@ -107,7 +103,7 @@ class Offers {
     }
 
     ArcGraph graph;
-    Incumbent incumbent;
+    Incumbent incumbent{graph};
 };
 
 TEST(PathPairIncumbent, TakesLaneGraphsThatCostLess) {
@@ -197,7 +193,7 @@ TEST(PathPairLegBounds, NoLegThroughAnArcCostsLessThanItsLabels) {
         s.for_each_leg([&](const std::vector<int>& leg, double cost) {
             ++legs;
             for (const int a : leg) {
-                const std::size_t at = static_cast<std::size_t>(a);
+                const std::size_t at = to_index(a);
                 ASSERT_LE(s.forward[at] + s.backward[at], cost + 1e-9);
             }
         });
@@ -225,7 +221,8 @@ TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
 /// Earlier walks are only a start: labels are the same from the walks of other costs, of another graph, and
 /// from none.
 TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
-    LegBounds bounds;
+    SearchClock clock;
+    LegBounds bounds(clock);
     std::vector<int> left_over;
     int started = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -264,7 +261,7 @@ TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
     residual.assign(graph, std::vector<char>{1, 0, 0, 0}, clock);
     Multipliers multipliers;
     multipliers.cone.assign(4, 0.0);
-    LegBounds bounds;
+    LegBounds bounds(clock);
     std::vector<double> edge_multiplier, reduced, forward;
     std::vector<int> before, cycle;
     int raised = 0;
@@ -309,17 +306,14 @@ TEST(PathPairMultipliers, ReducedCostOfALegIsItsCostPlusWhatItUses) {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         SceneWithMultipliers s(seed);
         s.for_each_leg([&](const std::vector<int>& leg, double cost) {
-            double sum =
-                s.end[static_cast<std::size_t>(leg.back())] +
-                s.multipliers
-                    .cone[static_cast<std::size_t>(s.residual.tail[static_cast<std::size_t>(leg.front())])];
+            double sum = s.end[to_index(leg.back())] +
+                         s.multipliers.cone[to_index(s.residual.tail[to_index(leg.front())])];
             for (std::size_t k = 0; k < leg.size(); ++k) {
-                const std::size_t at = static_cast<std::size_t>(leg[k]);
-                sum += s.graph.cost(s.residual.edge(leg[k])) +
-                       s.multipliers.cone[static_cast<std::size_t>(s.residual.head[at])];
+                const std::size_t at = to_index(leg[k]);
+                sum +=
+                    s.graph.cost(s.residual.edge(leg[k])) + s.multipliers.cone[to_index(s.residual.head[at])];
                 if (k > 0) {
-                    sum += s.graph.turn_cost(s.residual.arc[static_cast<std::size_t>(leg[k - 1])],
-                                             s.residual.arc[at]);
+                    sum += s.graph.turn_cost(s.residual.arc[to_index(leg[k - 1])], s.residual.arc[at]);
                 }
             }
             ASSERT_NEAR(sum, cost, 1e-9) << "seed " << seed;
@@ -332,7 +326,7 @@ TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const SceneWithMultipliers s(seed, 20);
-        const std::size_t edges = static_cast<std::size_t>(s.graph.edge_count());
+        const std::size_t edges = to_index(s.graph.edge_count());
         boost::random::mt19937_64 random(seed);
         std::vector<double> use;
         for (std::size_t e = 0; e < edges; ++e) {
@@ -347,7 +341,7 @@ TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
             const std::span<const int> clique = pool.edges(q);
             double sum = 0.0;
             for (const int e : clique) {
-                sum += use[static_cast<std::size_t>(e)];
+                sum += use[to_index(e)];
                 for (const int f : clique) ASSERT_TRUE(e == f || s.graph.incompatible(e, f));
             }
             EXPECT_GT(sum, 1.0);

@@ -12,6 +12,7 @@
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
+#include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 #include "tests/support/testing.hpp"
@@ -24,13 +25,10 @@ using Legs = std::array<std::vector<int>, 2>;
 struct Graph {
     explicit Graph(const LaneGraphProblem& problem) {
         arcs.build(problem, clock);
-        for (int cone = 0; cone < arcs.cone_count(); ++cone) {
-            system.kinds[0].start.push_back(arcs.near(cone) ? 1 : 0);
-            system.kinds[0].end.push_back(arcs.near(cone) ? 0 : 1);
-        }
+        system = tests::near_to_far(arcs);
         whole.assign(arcs, system.kinds[0].start, clock);
         usable.assign(static_cast<std::size_t>(arcs.arc_count()), 1);
-        incumbent.reset(arcs, 0.0);
+        incumbent.reset(0.0, 1e-9);
     }
     [[nodiscard]] std::vector<int> leg(std::span<const int> cones) const {
         std::vector<int> leg;
@@ -50,12 +48,10 @@ struct Graph {
     LegSystem system;
     ResidualGraph whole;
     std::vector<char> usable;
-    Incumbent incumbent;
+    Incumbent incumbent{arcs};
+    IncumbentWindow window{arcs, system, whole};
+    PairBeam beam{arcs, system, clock};
 };
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
 
 // No arc of the lane leaves 6 or 7, so windows around them are empty and nothing changes. From 4, one arc
 // leads to 6: the left leg may end anywhere behind it.
@@ -64,10 +60,10 @@ TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
     const Legs legs{s.leg(std::vector<int>{0, 2, 4, 6}), s.leg(std::vector<int>{1, 3, 5, 7})};
     std::ranges::fill(s.usable, char{0});
     for (const std::vector<int>& leg : legs) {
-        for (const int arc : leg) s.usable[at(arc)] = 1;
+        for (const int arc : leg) s.usable[to_index(arc)] = 1;
     }
-    IncumbentWindow window;
-    window.assign(s.arcs, s.system, s.whole, s.usable);
+    IncumbentWindow& window = s.window;
+    window.assign(s.usable);
     window.restart(1);
     std::vector<int> arcs;
     for (const bool improved : {true, false, false}) {  // 6, tried again, and 7
@@ -98,9 +94,8 @@ TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
 TEST(PathPairBeam, FindsTheStraightLane) {
     const LaneGraphProblem problem = tests::straight_lane_problem();
     Graph s(problem);
-    PairBeam beam;
-    beam.begin(s.arcs, s.system, s.clock);
-    beam.run({1, 2}, s.incumbent, s.clock);
+    s.beam.find_first_steps();
+    s.beam.run({1, 2}, s.incumbent);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(problem, {}).objective, 1e-9);
 }
@@ -112,16 +107,15 @@ TEST(PathPairBeam, IsTheSameAfterOtherBeams) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Graph s(make_problem(tests::random_scene(seed, 30), {}));
         const auto cost = [&](PairBeam& beam, std::size_t width) {
-            s.incumbent.reset(s.arcs, 1e6);
-            beam.run({width, 4}, s.incumbent, s.clock);
+            s.incumbent.reset(1e6, 1e-9);
+            beam.run({width, 4}, s.incumbent);
             return s.incumbent.cutoff();
         };
-        PairBeam beam;
-        beam.begin(s.arcs, s.system, s.clock);
+        s.beam.find_first_steps();
         for (const std::size_t width : {2, 64, 1, 8}) {
-            PairBeam fresh;
-            fresh.begin(s.arcs, s.system, s.clock);
-            EXPECT_EQ(cost(beam, width), cost(fresh, width));
+            PairBeam fresh(s.arcs, s.system, s.clock);
+            fresh.find_first_steps();
+            EXPECT_EQ(cost(s.beam, width), cost(fresh, width));
             found += s.incumbent.found() ? 1 : 0;
         }
     }
@@ -137,10 +131,9 @@ TEST(PathPairBeam, FindsLaneGraphsAndOftenTheBest) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 9), {});
         const RldReport best = exhaustive->solve(problem, {});
         Graph s(problem);
-        s.incumbent.reset(s.arcs, 1e6);
-        PairBeam beam;
-        beam.begin(s.arcs, s.system, s.clock);
-        beam.run({64, 16}, s.incumbent, s.clock);
+        s.incumbent.reset(1e6, 1e-9);
+        s.beam.find_first_steps();
+        s.beam.run({64, 16}, s.incumbent);
         if (!best.objective) {
             EXPECT_FALSE(s.incumbent.found());
             continue;
@@ -160,26 +153,25 @@ TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Graph s(make_problem(tests::random_scene(seed, 30), {}));
-        PairBeam beam;
-        beam.begin(s.arcs, s.system, s.clock);
-        beam.run({16, 4}, s.incumbent, s.clock);
+        s.beam.find_first_steps();
+        s.beam.run({16, 4}, s.incumbent);
         if (!s.incumbent.found()) continue;
         const Legs& legs = s.incumbent.legs();
-        IncumbentWindow window;
-        window.assign(s.arcs, s.system, s.whole, s.usable);
+        IncumbentWindow& window = s.window;
+        window.assign(s.usable);
         window.restart(10 + seed);
         std::vector<int> arcs;
         while (window.next(legs, arcs)) {
             EXPECT_TRUE(std::ranges::is_sorted(arcs));
             std::vector<int> others;
-            for (const int a : arcs) others.push_back(s.whole.arc[at(a)]);
+            for (const int a : arcs) others.push_back(s.whole.arc[to_index(a)]);
             for (const std::vector<int>& leg : legs) {
                 for (const int arc : leg) EXPECT_EQ(std::erase(others, arc), 1U);
             }
             with_others += others.empty() ? 0 : 1;
             const auto expect_fixed = [&](const std::vector<char>& ends, const std::vector<char>& all,
                                           int cone, int arc) {
-                EXPECT_NE(ends[at(cone)], 0);
+                EXPECT_NE(ends[to_index(cone)], 0);
                 if (ends == all) return;
                 EXPECT_EQ(Graph::marked(ends).size(), 1U);
                 ++fixed_ends;
@@ -212,10 +204,10 @@ struct Stopped {
 Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     const LaneGraphProblem problem = make_problem(scene, {});
     Graph s(problem);
-    BranchAndBound search(s.arcs, s.incumbent, options);
     tests::FakeSearchClock clock(looks + 1);
+    BranchAndBound search(s.arcs, s.system, s.incumbent, options, clock);
     Stopped result;
-    result.outcome = search.run(s.system, 1e-9, clock);
+    result.outcome = search.run();
     result.cost = s.incumbent.cutoff();
     if (s.incumbent.found()) {
         LaneGraph lane;

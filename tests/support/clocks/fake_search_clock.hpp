@@ -13,6 +13,12 @@ class FakeSearchClock : public path_pair::SearchClock {
     [[nodiscard]] int looks() const { return looks_; }
     /// The time ends at the next check.
     void strike() { strikes_at_ = looks_ + 1; }
+    /// The same clock for another search.
+    void restart(int strikes_at) {
+        SearchClock::restart(Deadline());
+        strikes_at_ = strikes_at;
+        looks_ = 0;
+    }
 
   private:
     [[nodiscard]] bool has_passed() override { return ++looks_ == strikes_at_; }

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "conelane/planner.hpp"
+
+#include <memory>
+
+namespace conelane {
+
+/// Acceleration and skidpad: the rules give the shape of the course. The shape is registered to the cones,
+/// and the lane is the route of the rules from the car on, 1.5 m wide to each side (acceleration: as wide as
+/// the cones show).
+///
+/// The detector runs only until the registration is trusted; after that `Plan::answer` has its default.
+/// `Plan::lap` counts the completed circles of the skidpad, and is 0 in acceleration. `PlannerOptions::laps`
+/// must be absent.
+[[nodiscard]] std::unique_ptr<Planner> make_known_course_planner(const PlannerOptions& options);
+
+/// Trackdrive and autocross: laps of a course that is not known in advance.
+[[nodiscard]] std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options);
+/// By this detector, whatever `options` names.
+[[nodiscard]] std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options,
+                                                        std::unique_ptr<LaneDetector> detector);
+
+/// The frame as a scene. Cones without id get the lowest ids that no cone of the frame has. Throws
+/// InvalidInput if the frame is invalid (a time that is not finite, or an invalid scene), or the time limit
+/// is not a number.
+[[nodiscard]] Scene checked_scene(const Frame& frame, const DetectionLimits& limits);
+
+/// Throws InvalidInput naming an option that is invalid for every mission: max_age_s or one of `drivable`.
+void validate_shared(const PlannerOptions& options);
+
+}  // namespace conelane
