@@ -36,18 +36,22 @@ inline constexpr std::tuple kFields<Provenance>{Field{"commit", &Provenance::com
 /// All parameters, by the names that files of parameters have.
 struct EveryParameter {
     static void read(const JsonNode& json, MethodRecord::Rld& rld) {
-        for_each(rld.parameters, [&](const char* key, auto& value) { read_value(json.member(key), value); });
+        for_each(rld.parameters,
+                 [&](const std::string& key, auto& value) { read_value(json.member(key), value); });
     }
     static void put(nlohmann::ordered_json& json, const MethodRecord::Rld& rld, const std::string& place) {
-        for_each(rld.parameters,
-                 [&](const char* key, const auto& value) { json[key] = value_json(value, place + key); });
+        for_each(rld.parameters, [&](const std::string& key, const auto& value) {
+            json[key] = value_json(value, place + key);
+        });
     }
 
   private:
     static void for_each(auto& parameters, const auto& use) {
-        for (const RldParameterField& field : rld_parameter_fields()) use(field.key, parameters.*field.value);
+        for (const RldParameterField& field : rld_parameter_fields())
+            use(std::string(field.key), parameters.*field.value);
         use("pairing", parameters.pairing);
-        for (const RldParameterField& field : rld_extra_fields()) use(field.key, parameters.*field.value);
+        for (const RldParameterField& field : rld_extra_fields())
+            use(std::string(field.key), parameters.*field.value);
         use("use_confidence", parameters.use_confidence);
         use("forbid_crossing", parameters.forbid_crossing);
     }
