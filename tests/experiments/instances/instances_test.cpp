@@ -35,7 +35,7 @@ std::map<std::string, Known> read_solu(const std::filesystem::path& file) {
     return all;
 }
 
-std::set<std::string> lines_of(const std::filesystem::path& file) {
+std::set<std::string> line_set_of(const std::filesystem::path& file) {
     std::ifstream in(file);
     EXPECT_TRUE(in) << file;
     std::set<std::string> all;
@@ -78,8 +78,8 @@ TEST_F(Instances, ASliceOfTheStoredLibraryIsTheSameAgain) {
     const InstanceCounts counts = write_instances(path("made"), scenes, options);
     EXPECT_EQ(counts.written, 2 * scenes.size());
     EXPECT_EQ(counts.optimal, counts.written) << "twelve cones take milliseconds";
-    const std::set<std::string> stored_list = lines_of(kStored / "conelane.test");
-    for (const std::string& file : lines_of(path("made") / "conelane.test")) {
+    const std::set<std::string> stored_list = line_set_of(kStored / "conelane.test");
+    for (const std::string& file : line_set_of(path("made") / "conelane.test")) {
         EXPECT_TRUE(stored_list.contains(file)) << file;
         EXPECT_TRUE(std::filesystem::exists(path("made") / file)) << file;
     }
@@ -196,7 +196,7 @@ TEST_F(Instances, TheProgramWritesFilesThatUnpack) {
     const std::string text = unpacked(path("made") / (name + ".mps.gz"));
     EXPECT_THAT(text, HasSubstr("NAME " + name + " FREE\nROWS\n"));
     EXPECT_TRUE(text.ends_with("ENDATA\n"));
-    EXPECT_EQ(lines_of(path("made") / "conelane.test").size(), 4u);
+    EXPECT_EQ(line_set_of(path("made") / "conelane.test").size(), 4u);
 }
 
 TEST_F(Instances, EachObjectiveHasProgramsAndLinesInTheIndex) {
@@ -211,7 +211,7 @@ TEST_F(Instances, EachObjectiveHasProgramsAndLinesInTheIndex) {
         wanted.insert(scene + "n12" + costs + ".tight.mps.gz");
         wanted.insert(scene + "all" + costs + ".tight.mps.gz");
     }
-    EXPECT_EQ(lines_of(path("made") / "conelane.test"), wanted);
+    EXPECT_EQ(line_set_of(path("made") / "conelane.test"), wanted);
 
     std::ifstream index(path("made") / "index.csv");
     std::string line;
