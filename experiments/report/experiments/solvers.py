@@ -182,7 +182,7 @@ def solver_measures(results, published):
     solved. Variation: standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the
     gap to the best lane graph known, over time. Memory: growth of the process; for a program from outside, all its
     memory. Pairs: Wilcoxon's signed-rank test on a scene's geometric mean times, corrected by Holm. Definitions and sources:
-    docs/benchmark-measures.md.
+    docs/measures.md.
     Source: this project.
     Command: conelane study backends --sizes 12,20,30,60,all --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out
     RESULTS/backends.jsonl"""
