@@ -99,6 +99,7 @@ const RowFields<SolveBlock> kBlockFields{{"row", [](const SolveBlock&) { return 
                                          {"nearest", &SolveBlock::size},
                                          {"backend", &SolveBlock::backend},
                                          {"version", &SolveBlock::version},
+                                         {"treatment", &SolveBlock::treatment},
                                          {"reference_ms", &SolveBlock::reference_ms},
                                          {"peak_bytes", &SolveBlock::peak_bytes}};
 
@@ -131,7 +132,7 @@ class BackendsStudy : public SolveStudy {
         command.add_flag("--warm-start", warm_start_,
                          "each also from the lane graph of the scene before, its cones found again by id");
         command.add_flag("--all-rows", all_rows_,
-                         "each program from outside also on files with all rows, asked once");
+                         "each solver of programs also on one program with all rows");
         command
             .add_option("--permutations", solves_.permutations,
                         "number of additional runs of each scene without a start, with cones, rows and "
@@ -185,7 +186,7 @@ class BackendsStudy : public SolveStudy {
             for (const Backend& one : of_one) {
                 all.push_back(one);
                 if (warm_start_) all.push_back(one), all.back().warm_start = true;
-                if (all_rows_ && one.outside) all.push_back(one), all.back().all_rows = true;
+                if (all_rows_ && one.uses_formulation()) all.push_back(one), all.back().all_rows = true;
             }
         };
         for (const std::string& solver : split_detectors(solvers_)) {
@@ -220,14 +221,15 @@ class BackendsStudy : public SolveStudy {
 
     static std::string machine(const SolveResults& results) {
         std::vector<double> reference_ms;
-        std::map<std::string, std::string> versions;
+        std::map<std::string, std::string> backends;
         for (const SolveBlock& block : results.blocks) {
             reference_ms.push_back(block.reference_ms);
-            versions.emplace(block.backend, block.version);
+            backends.emplace(block.backend,
+                             fmt::format("{} ({})", block.version.empty() ? "version unknown" : block.version,
+                                         block.treatment));
         }
         std::string lines;
-        for (const auto& [backend, version] : versions)
-            lines += fmt::format("{}: {}\n", backend, version.empty() ? "version unknown" : version);
+        for (const auto& [backend, said] : backends) lines += fmt::format("{}: {}\n", backend, said);
         lines += provenance().machine + '\n';
         if (reference_ms.empty()) return lines;
         return lines + fmt::format(

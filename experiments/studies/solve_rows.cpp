@@ -130,7 +130,8 @@ std::vector<const AnnotatedScene*> scenes_of_size(std::span<const AnnotatedScene
 void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedScene> scenes,
            const SolveOptions& options, ReferenceProblem* reference, SolveResults& results) {
     const std::vector<const AnnotatedScene*> wanted = scenes_of_size(scenes, size, options);
-    SolveBlock block{.size = size, .backend = backend.label(), .version = {}};
+    SolveBlock block{
+        .size = size, .backend = backend.label(), .version = {}, .treatment = backend.treatment()};
     if (reference != nullptr) block.reference_ms = reference->mean_ms();
     const std::vector<std::size_t> starts = lap_starts(scenes);
     Progress progress(fmt::format("{} n={}", backend.label(), size_name(size)), wanted.size());

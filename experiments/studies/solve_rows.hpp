@@ -93,6 +93,7 @@ struct SolveBlock {
     std::size_t size = 0;
     std::string backend;
     std::string version;
+    std::string treatment;      ///< Backend::treatment
     double reference_ms = 0.0;  ///< ReferenceProblem just before
     /// Growth of this process, or the largest process of a program from outside.
     std::optional<std::size_t> peak_bytes = {};

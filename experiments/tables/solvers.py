@@ -219,8 +219,8 @@ def only(**values):
 
 
 def solver_table(rows):
-    names = {"path-pair": "`path-pair`, exact search", "clp-bb/tight": "`clp-bb`, tight", "cbc/tight": "`cbc`, tight",
-             "cbc-main/tight": "`cbc-main`, tight", "cbc-main/paper": "`cbc-main`, as printed"}
+    names = {"path-pair": "`path-pair`, exact search", "clp-bb/tight": "`clp-bb`, tight", "cbc/tight": "CBC tuned (`cbc`), tight",
+             "cbc-main/tight": "CBC, defaults (`cbc-main`), tight", "cbc-main/paper": "CBC, defaults (`cbc-main`), as printed"}
     lines = pivot(rows, {only(backend=backend): label for backend, label in names.items()}, [only(nearest=size) for size in (12, 30)],
                   lambda row: f"{times('median_ms', 'p95_ms', 'max_ms')(row)} ({row['proven']} of {row['scenes']})", "")
     return table(["solver", "n = 12", "n = 30"], lines + [["RLD paper (Mosek, its own machine)", "mean 71.8, p95 156", ""]])

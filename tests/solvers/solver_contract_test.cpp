@@ -3,6 +3,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
@@ -275,6 +276,34 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
         }
     }
     EXPECT_GT(started, 20);
+}
+
+/// With all rows from the first, one solve is enough, also where a cycle or a path between near ends pays.
+TEST(AllRows, OneSolveOfOneProgramGivesTheOptimum) {
+    RldParameters parameters;
+    parameters.w_b = 3.0;
+    parameters.w_t = 0.02;
+    parameters.t_crit = 1000.0;
+    parameters.d_min = 0.5;
+    parameters.d_near = 8.0;
+    for (const MilpBackend& backend : milp_backends()) {
+        const auto load = [&](const BinaryProgram& program, std::uint64_t) { return backend.load(program); };
+        const auto whole = make_milp_rld_solver(load, {.all_rows = true});
+        const auto on_demand = make_milp_rld_solver(load, {});
+        int rounds = 0;
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            SCOPED_TRACE(testing::Message() << backend.entry.name << ", seed " << seed);
+            parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+            const Scene scene = tests::random_scene(seed, 8);
+            const LaneGraphProblem problem = make_problem(scene, parameters);
+            const RldReport report = whole->solve(problem, {});
+            EXPECT_LE(report.rounds, 1);
+            rounds = std::max(rounds, on_demand->solve(problem, {}).rounds);
+            if (!tests::agrees(report, make_exhaustive_solver()->solve(problem, {}))) continue;
+            tests::expect_confirmed(report, scene, parameters);
+        }
+        EXPECT_GT(rounds, 1) << "no answer violates a row, so the test says nothing";
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(exact_solver_cases()),

@@ -242,7 +242,7 @@ TEST(FailingBackend, IsAnErrorWithAMessageThatKeepsAFeasibleStart) {
     for (const Way way : {Way::load_throws, Way::throws, Way::throws_no_std_exception, Way::reports,
                           Way::gives_a_wrong_point}) {
         SCOPED_TRACE(static_cast<int>(way));
-        const auto solver = make_milp_rld_solver(FailingMilpSolver(way), Formulation::tight);
+        const auto solver = make_milp_rld_solver(FailingMilpSolver(way), {});
         const RldReport alone = solver->solve(problem, {});
         EXPECT_EQ(alone.status, SolveStatus::error);
         EXPECT_FALSE(alone.message.empty());

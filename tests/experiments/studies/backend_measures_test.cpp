@@ -145,7 +145,8 @@ TEST(Permutations, DoNotChangeAnOptimum) {
     options.permutations = 2;
     options.gap_limits_ms = {0.1, 1.0};
     options.backends = {backend_of("path-pair"), backend_of("cbc"), backend_of("cbc-main"),
-                        backend_of("clp-bb/paper")};
+                        backend_of("clp-bb/paper"), backend_of("cbc")};
+    options.backends.back().all_rows = true;
     SolveResults results = solve_scenes(set.scenes, options);
     mark_refuted_claims(results.rows);
     std::map<const AnnotatedScene*, double> optimum;
@@ -160,11 +161,17 @@ TEST(Permutations, DoNotChangeAnOptimum) {
     }
     EXPECT_EQ(orders.size(), 3U);
     EXPECT_EQ(orders[1], orders[0]);
-    ASSERT_EQ(results.blocks.size(), 4U);
+    std::vector<std::string> treatments;
     for (const SolveBlock& block : results.blocks) {
         EXPECT_GT(block.reference_ms, 0.0);
         EXPECT_FALSE(block.version.empty());
+        treatments.push_back(block.treatment);
     }
+    EXPECT_THAT(treatments, testing::ElementsAre("no program; no start",
+                                                 "tight rows, on demand; settings: tuned; no start",
+                                                 "tight rows, on demand; settings: defaults; no start",
+                                                 "printed rows, on demand; settings: tuned; no start",
+                                                 "tight rows, all; settings: tuned; no start"));
 }
 
 class AslibScenario : public FileTest {};
