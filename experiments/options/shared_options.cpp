@@ -297,4 +297,28 @@ void add_threads_option(CLI::App& command, unsigned& threads, const std::string&
         ->capture_default_str();
 }
 
+CLI::Option* add_sizes_option(CLI::App& command, std::vector<std::string>& sizes,
+                              const std::string& description) {
+    return command.add_option("--sizes", sizes, description)
+        ->delimiter(',')
+        ->check([](const std::string& size) {
+            return size == "all" ? std::string() : whole_number(1, kMaxCones)(size);
+        })
+        ->capture_default_str();
+}
+
+void add_shard_option(CLI::App& command, Shard& shard, const std::string& description) {
+    const auto parse = [&shard](const std::string& text) {
+        const std::size_t slash = text.find('/');
+        const char* const end = text.data() + text.size();
+        const auto index = std::from_chars(text.data(), end, shard.index);
+        if (slash != std::string::npos && index.ec == std::errc{} && index.ptr == text.data() + slash) {
+            const auto count = std::from_chars(text.data() + slash + 1, end, shard.count);
+            if (count.ec == std::errc{} && count.ptr == end && shard.index < shard.count) return;
+        }
+        throw CLI::ValidationError("--shard", "'" + text + "' is not I/N with 0 <= I < N");
+    };
+    command.add_option_function<std::string>("--shard", parse, "I/N: " + description);
+}
+
 }  // namespace conelane::experiments

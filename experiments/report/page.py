@@ -6,6 +6,7 @@ from html import escape
 
 from . import experiments, gallery, headline, provenance
 from .experiment import blocks
+from .experiments.solvers import first_figure
 from .load import CATEGORIES
 from .methods import whole
 from .scenes import read_scenes
@@ -192,7 +193,7 @@ def render(results, published, tracks=()):
 <body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
 <button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
 <main><div class="intro">{_intro(results, data)}</div>
-{body}</main>
+{first_figure(results)}{body}</main>
 <script type="application/json" id="marks">{_asset("marks.json")}</script>
 <script>{_asset("tables.js")}</script>
 <script type="module">{_asset("drawing.mjs").replace("export ", "")}{"".join(map(_asset, ("frames.js", "viewer.js", "race.js")))}</script>

@@ -25,6 +25,8 @@ def version_of(path):
 
 
 def rounded(value):
+    if isinstance(value, list):
+        return list(map(rounded, value))
     return round(value, 6) if isinstance(value, float) else value
 
 

@@ -34,15 +34,6 @@ def backend_rows(lines):
     return rows
 
 
-def size_rows(lines):
-    """The measures that the study itself prints, see docs/measures.md."""
-    versions = {line["backend"]: line.get("version", "") for line in lines if line.get("row") == "block"}
-    return [{"table": "sizes", "backend": line["backend"], "nearest": line["nearest"], "version": versions.get(line["backend"], ""),
-             "scenes": line["scenes"], "runs": line["runs"], "solved": line["solved"], "errors": line["errors"],
-             "geometric_ms": rounded(line["geometric_ms"]), "par10_ms": rounded(line["par10_ms"])}
-            for line in lines if line.get("row") == "summary" and "condition" not in line]
-
-
 def proven_rows(name, lines):
     """Shares proven within 50 ms and within the limit of 1 s, by range and rate, with and without the dense course."""
     def place(line):
@@ -175,7 +166,6 @@ def collect(folder):
 
     for name in ("backends", "backends_main"):
         stored["rows"] += backend_rows(lines(name))
-    stored["rows"] += size_rows(lines("backends_sizes"))
     for name, keys in (("formulations", ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap",
                                          "median_gap", "mean_nodes", "median_ms"]),
                        ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"]),
@@ -224,15 +214,6 @@ def solver_table(rows):
     lines = pivot(rows, {only(backend=backend): label for backend, label in names.items()}, [only(nearest=size) for size in (12, 30)],
                   lambda row: f"{times('median_ms', 'p95_ms', 'max_ms')(row)} ({row['proven']} of {row['scenes']})", "")
     return table(["solver", "n = 12", "n = 30"], lines + [["RLD paper (Mosek, its own machine)", "mean 71.8, p95 156", ""]])
-
-
-def size_table(rows):
-    sizes = sorted({row["nearest"] for row in rows}, key=lambda size: size or math.inf)  # 0: all visible cones
-    versions = {row["backend"]: row["version"] for row in reversed(rows)}
-    lines = pivot(rows, {only(backend=row["backend"]): row["backend"] for row in rows}, [only(nearest=size) for size in sizes],
-                  lambda row: f"{milliseconds(row['geometric_ms'])} / {milliseconds(row['par10_ms'])} ({percent(row['solved'] / row['runs'])} %)")
-    return table(["solver, formulation", "version", *(f"n = {size}" if size else "all visible" for size in sizes)],
-                 [[f"`{backend}`", versions[backend], *cells] for backend, *cells in lines])
 
 
 def formulation_table(rows):
@@ -330,7 +311,7 @@ def gap_table(rows):
                  lines)
 
 
-TABLES = {"solvers": ("backends", solver_table), "solvers by size": ("sizes", size_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
+TABLES = {"solvers": ("backends", solver_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
           "growth of path-pair": ("growth", growth_table), "growth by density": ("growth by density", lambda rows: class_table(rows, "density")),
           "growth by edges": ("growth by edges", lambda rows: class_table(rows, "edges")), "within a limit": ("anytime", anytime_table),
           "certificates": ("certificates", certificate_table), "width of the beam": ("beam", beam_table),

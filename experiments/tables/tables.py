@@ -4,7 +4,7 @@
     tables.py write FILE...       the tables between their markers, and a copy of each file in docs/benchmarks/
     tables.py check               whether the pages say what the files in docs/benchmarks/ say; exit code 1 if not
 
-KIND is held_out, shipped or solvers; experiments/tables/KIND makes the runs. The KIND reproduce is about the whole run of experiments/reproduce.
+KIND is held_out, shipped, solvers or engines; experiments/tables/KIND makes the runs. The KIND reproduce is about the whole run of experiments/reproduce.
 A table stands between `<!-- table NAME -->` and `<!-- end of table -->`. All figures are to be of one commit, that of the whole run.
 """
 
@@ -14,6 +14,7 @@ import re
 import sys
 
 import beam_picture
+import engines
 import held_out
 import parameter_sets
 import reproduce
@@ -23,9 +24,9 @@ from cells import InputError, read_json, table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STORED = os.path.join(ROOT, "docs", "benchmarks")
-PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
+PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/rld.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
 JUDGE = os.path.join(STORED, "course_judge.json")  # the record of a judge that is not in the project any more
-KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "reproduce": reproduce}
+KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "engines": engines, "reproduce": reproduce}
 BEAM_PICTURE = os.path.join(ROOT, "docs", "learned-costs.svg")
 
 BLOCK = re.compile(r"(<!-- table (?P<name>[^>]*?) -->\n).*?(<!-- end of table -->)", flags=re.S)
@@ -73,10 +74,11 @@ def all_tables(stored):
 
 
 def strangers(stored):
-    """The runs that are not of the commit of the whole run, where there was a whole run."""
+    """The runs that are not of the commit of the whole run, where there was a whole run. Engines may be measured again by themselves, as more of
+    them come; their table says of which commit they are."""
     commit = stored["reproduce"].get("commit")
     return [f"docs/benchmarks/{kind}.json: the run '{name}' is of commit {run['commit']}, the whole run of {commit}: experiments/reproduce makes all again"
-            for kind in KINDS for name, run in stored[kind].get("runs", {}).items() if commit is not None and run["commit"] != commit]
+            for kind in KINDS if kind != "engines" for name, run in stored[kind].get("runs", {}).items() if commit is not None and run["commit"] != commit]
 
 
 def filled(text, tables, page):

@@ -106,5 +106,38 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
     EXPECT_THAT(beams.output, HasSubstr("best score"));
 }
 
+TEST_F(Program, ShardsOfASolverStudyAreJoinedWithoutSolvingAgain) {
+    run_well(
+        "scenes --tracks generated:circle generated:straight --fp 0.3 --range 25 --every 40 --out "
+        "s.scenes.jsonl");
+    const std::string study =
+        "study backends --scenes s.scenes.jsonl --sizes 8 --solvers path-pair,cbc --out ";
+    run_well(study + "0.jsonl --shard 0/2 --time-limit 0.001 --then 30000");
+    run_well(study + "1.jsonl --shard 1/2");
+    run_well(study + "whole.jsonl --stored 0.jsonl,1.jsonl");
+    const auto solves = [&](const std::vector<std::string>& files) {
+        std::map<std::string, double> latencies_ms;
+        for (const std::string& file : files) {
+            for (const nlohmann::json& row : json_lines(file)) {
+                if (!row.contains("row"))
+                    latencies_ms[row["backend"].get<std::string>() + row["scene"].get<std::string>()] =
+                        row["latency_ms"];
+            }
+        }
+        return latencies_ms;
+    };
+    EXPECT_EQ(solves({"whole.jsonl"}), solves({"0.jsonl", "1.jsonl"}));
+    std::set<double> limits_ms;
+    for (const nlohmann::json& row : json_lines("whole.jsonl")) {
+        if (row.value("row", "") == "summary")
+            EXPECT_TRUE(row.contains("par10_ms_interval")) << "two courses";
+        if (!row.contains("row")) limits_ms.insert(row["limit_ms"].get<double>());
+    }
+    EXPECT_EQ(limits_ms, (std::set<double>{1000.0, 30000.0}));
+    expect_refused(study + "x.jsonl --params shape --stored 0.jsonl", {"0.jsonl:1", "parameters"});
+    expect_refused(study + "x.jsonl --time-limit 100 --then 50", {"--then", "ascending"});
+    expect_refused(study + "x.jsonl --shard 2/2", {"--shard", "2/2"});
+}
+
 }  // namespace
 }  // namespace conelane::experiments

@@ -35,14 +35,6 @@ TEST(SolverMeasures, FailuresCountAtTheLimitOrAMultiple) {
     EXPECT_THROW((void)penalised_average_ms({}, kLimit_ms, 2.0), InvalidInput);
 }
 
-TEST(SolverMeasures, SolvedByAllAreTheRunsThatNoneFails) {
-    auto runs = three_solvers();
-    EXPECT_THAT(solved_by_all(runs), ElementsAre(0U));
-    EXPECT_TRUE(solved_by_all({}).empty());
-    runs[0].pop_back();
-    EXPECT_THROW((void)solved_by_all(runs), InvalidInput);
-}
-
 TEST(SolverMeasures, ProfilesCountWithinAMultipleOfTheFastest) {
     const std::vector<double> ratios{1.0, 3.9, 4.0, 8.0, 1000.0};
     const auto profiles = performance_profiles(three_solvers(), ratios);

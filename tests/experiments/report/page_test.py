@@ -146,11 +146,11 @@ class ReportPage(unittest.TestCase):
     def test_has_every_figure_or_says_why_not(self):
         for name in ("headline", "by-rate", "methods", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
                      "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
-                     "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start", "anytime-shares", "anytime-gap",
+                     "latency-by-rate", "optimality", "optimality-gaps", "engine-times", "solver-measures", "solver-profile-6", "warm-start", "anytime-shares", "anytime-gap",
                      "growth-size", "growth-density", "race-finished", "race-table", "race-replay",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
                      "rld-fig-7-circle", "confidence-and-colour", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
-                     "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
+                     "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios"):
             self.assertTrue(name in self.page.ids, name)
         absent = "".join(re.findall(r'<div class="absent">(.*?)</div>', self.text, flags=re.S))
         self.assertEqual(re.findall(r"<b>(.*?)</b>", absent),
@@ -158,7 +158,7 @@ class ReportPage(unittest.TestCase):
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
-        self.assertEqual(len(articles), 29 + BENCHMARKED)
+        self.assertEqual(len(articles), 27 + BENCHMARKED)
         for article in articles:
             self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
             self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
@@ -285,13 +285,13 @@ class ReportPage(unittest.TestCase):
         text = self.made_of_copy(lambda copy: write("".join(json.dumps(line) + "\n" for line in stored + [
             line | {"nearest": 0} for line in stored]), copy, "backends.jsonl"))
         ids = Page(text).ids
-        for name in ("backends-profile", "solver-profile", "solver-primal-gap", "solver-dual-gap"):
+        for name in ("solver-profile", "solver-primal-gap", "solver-dual-gap"):
             self.assertTrue({f"{name}-6", f"{name}-all"} <= set(ids), name)
         measures = next(one for one in re.findall(r'<article class="experiment.*?</article>', text, flags=re.S) if "<h3>Measures of solvers</h3>" in one)
         summaries = [line for line in stored if line.get("row") == "summary"]
         for group in {f"all {line.get('condition', '')}".strip() for line in summaries}:
             self.assertGreaterEqual(len(re.findall(rf">{group}</t[dh]>", measures)), 2, group)
-        for title in ("geometric mean ms", "PAR 1 ms", "PAR 2 ms", "PAR 10 ms", "variation %", "primal integral ms", "dual integral ms",
+        for title in ("geometric mean ms", "PAR 10 ms", "adds to the virtual best, ms", "variation %", "primal integral ms", "dual integral ms",
                       "peak MiB", "p, Holm", "coefficient of variation"):
             self.assertIn(title, measures)
         for block in (line for line in stored if line.get("row") == "block"):
@@ -348,7 +348,7 @@ class ReportPage(unittest.TestCase):
                 done = report(RESULTS, again, "--png", pictures)
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
                 self.assertEqual(read(again), self.text)
-                self.assertEqual(sorted(os.listdir(pictures)), ["growth.png", "iou.png", "latency.png", "success.png", "usable.png"])
+                self.assertEqual(sorted(os.listdir(pictures)), ["engines.png", "growth.png", "iou.png", "latency.png", "success.png", "usable.png"])
                 seen.append({})
                 for picture in os.listdir(pictures):
                     with open(os.path.join(pictures, picture), "rb") as stream:
@@ -561,7 +561,9 @@ class ReportPage(unittest.TestCase):
                     text = stream.read()
                 made = Page(text)
                 self.assertEqual((made.wrong, made.open, made.outside), ([], [], []))
-                self.assertLessEqual({"exactness", "protocol", "backends", "solver-measures"}, set(made.ids))
+                self.assertLessEqual({"exactness", "protocol", "engine-times", "solver-measures"}, set(made.ids))
+                self.assertLess(text.index('id="engine-times"'), text.index('id="exactness"'))
+                self.assertEqual(os.listdir(os.path.join(folder, "pictures")), ["engines.png"])
                 self.assertNotIn("comparison", made.ids)
             self.assertIn("By the number of cones", text)
 

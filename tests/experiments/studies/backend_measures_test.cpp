@@ -32,9 +32,10 @@ SolveRow row_of(const AnnotatedScene& scene, const std::string& solver, SolveSta
 }
 
 /// The measures of this kind.
-std::vector<Json> rows_of_kind(const std::string& kind, const std::vector<SolveRow>& rows) {
+std::vector<Json> rows_of_kind(const std::string& kind, const std::vector<SolveRow>& rows,
+                               const std::string& reference = {}) {
     StudyResult result;
-    add_measures(result, {rows, {}}, kLimit_ms);
+    add_measures(result, {rows, {}}, kLimit_ms, reference);
     std::erase_if(result.rows, [&](const Json& row) { return row.at("row") != kind; });
     return result.rows;
 }
@@ -76,7 +77,8 @@ TEST(RefutedClaims, AndErrorsCountInEveryOrder) {
 
 /// Two backends on two scenes in two orders; "b" fails once and is refuted once.
 TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
-    const std::vector<AnnotatedScene> scenes(2, straight_scene());
+    std::vector<AnnotatedScene> scenes(2, straight_scene());
+    scenes[1].track = "another course";
     using Status = SolveStatus;
     std::vector<SolveRow> rows;
     for (const std::size_t order : {0, 1}) {
@@ -101,11 +103,15 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     EXPECT_EQ(b.at("refuted"), 1U);
     EXPECT_NEAR(a.at("geometric_ms"), std::pow(3.0 * 5.0 * 5.0 * 5.0, 0.25) - 1.0, 1e-9);
     EXPECT_NEAR(b.at("geometric_ms"), std::pow(2.0 * 2.0 * 101.0 * 101.0, 0.25) - 1.0, 1e-9);
-    EXPECT_DOUBLE_EQ(b.at("par1_ms"), (1.0 + 1.0 + 100.0 + 100.0) / 4.0);
-    EXPECT_DOUBLE_EQ(b.at("par2_ms"), (1.0 + 1.0 + 200.0 + 200.0) / 4.0);
     EXPECT_DOUBLE_EQ(b.at("par10_ms"), (1.0 + 1.0 + 1000.0 + 1000.0) / 4.0);
-    EXPECT_EQ(a.at("common"), 2U);
-    EXPECT_NEAR(a.at("common_geometric_ms"), std::sqrt(3.0 * 5.0) - 1.0, 1e-9);
+    const auto expect_interval = [](const Json& interval, double low, double high) {
+        EXPECT_NEAR(interval[0], low, 1e-9);
+        EXPECT_NEAR(interval[1], high, 1e-9);
+    };
+    expect_interval(a.at("geometric_ms_interval"), std::sqrt(3.0 * 5.0) - 1.0, 4.0);
+    expect_interval(b.at("par10_ms_interval"), 1.0, 1000.0);
+    EXPECT_DOUBLE_EQ(a.at("contribution_ms"), 500.5 - 2.5);  // without it only "b" is left
+    EXPECT_DOUBLE_EQ(b.at("contribution_ms"), 3.5 - 2.5);
     EXPECT_EQ(a.at("won"), 2U);
     EXPECT_EQ(b.at("won"), 2U);
     // Scene 0: 2 and 4 ms; scene 1: 4, 4 and 1 ms.
@@ -118,8 +124,12 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     EXPECT_DOUBLE_EQ(a.at("profile").back(), 1.0);
     const std::vector<Json> pairs = rows_of_kind("pair", rows);
     ASSERT_EQ(pairs.size(), 1U);
-    EXPECT_EQ(pairs[0].at("scenes"), 2U);
-    EXPECT_NEAR(pairs[0].at("ratio"), std::pow(2.0 * 4.0 * 4.0 * 4.0 / (100.0 * 100.0), 0.25), 1e-9);
+    EXPECT_EQ(pairs[0].at("courses"), 2U);
+    EXPECT_EQ(pairs[0].at("second"), "a");
+    EXPECT_NEAR(pairs[0].at("ratio"), std::pow(100.0 * 100.0 / (2.0 * 4.0 * 4.0 * 4.0), 0.25), 1e-9);
+    expect_interval(pairs[0].at("ratio_interval"), std::sqrt(1.0 / 8.0), 25.0);
+    EXPECT_DOUBLE_EQ(pairs[0].at("p_value"), 1.0) << "one course for each of them";
+    EXPECT_EQ(rows_of_kind("pair", rows, "b")[0].at("first"), "a");
     const std::vector<Json> selections = rows_of_kind("selection", rows);
     ASSERT_EQ(selections.size(), 1U);
     EXPECT_EQ(selections[0].at("single_best"), "a");
