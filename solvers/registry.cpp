@@ -2,7 +2,6 @@
 
 #include "conelane/core_solvers.hpp"
 #include "conelane/milp_solvers.hpp"
-#include "conelane/relaxation_solvers.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -12,8 +11,7 @@ namespace conelane {
 std::span<const RldSolverEntry> rld_solvers() {
     static const std::vector<RldSolverEntry> kSolvers = [] {
         std::vector<RldSolverEntry> all;
-        for (const std::span<const RldSolverEntry> part :
-             {core_solvers(), milp_solvers(), relaxation_solvers()})
+        for (const std::span<const RldSolverEntry> part : {core_solvers(), milp_solvers()})
             all.insert(all.end(), part.begin(), part.end());
         return all;
     }();

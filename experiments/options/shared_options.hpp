@@ -74,8 +74,6 @@ CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::
 /// option that names a file counts as an input, a track by its SPEC, a scenes file with its companion. Throws
 /// CLI::ValidationError naming both.
 void refuse_lost_inputs(CLI::App& command);
-/// --seed N, if the default is set elsewhere
-void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description);
 /// --threads T
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& description);
 

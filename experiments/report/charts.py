@@ -16,8 +16,7 @@ TOP_SHARE = {"marker": "*", "markersize": 11, "linestyle": "", "color": ACCENT} 
 
 @dataclass
 class Curve:
-    """`points`: (x, y) or, with error bars, (x, y, below, above). `draw`: a line, "steps", "bins", of which x are the edges,
-    or "filled" ones."""
+    """`points`: (x, y) or, with error bars, (x, y, below, above). `draw`: a line, "steps", "bins", of which x are the edges."""
 
     label: str
     points: object
@@ -25,10 +24,10 @@ class Curve:
     draw: str = "line"
 
     def on(self, axes):
-        if self.draw in ("bins", "filled"):
+        if self.draw == "bins":
             edges, counts = self.points
             look = {key: value for key, value in self.style.items() if key != "marker"} | {"linewidth": 1.4}
-            axes.stairs(counts, edges, label=self.label, **{"fill": True, **self.style} if self.draw == "filled" else look)
+            axes.stairs(counts, edges, label=self.label, **look)
             return
         x, y, *error = np.array(self.points, dtype=float).T
         if self.draw == "steps":

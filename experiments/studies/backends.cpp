@@ -3,7 +3,6 @@
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/studies/aslib.hpp"
 #include "experiments/studies/backend_measures.hpp"
 #include "experiments/studies/machine.hpp"
 #include "experiments/studies/solve_study.hpp"
@@ -142,8 +141,6 @@ class BackendsStudy : public SolveStudy {
         add_limits_option(
             command, "--gap-limits", solves_.gap_limits_ms,
             "time limits [ms], ascending: each scene is solved again under each, for the gap over time");
-        command.add_option("--aslib", aslib_,
-                           "a folder for the runs and features of the instances as a scenario of ASlib");
     }
 
   protected:
@@ -152,7 +149,6 @@ class BackendsStudy : public SolveStudy {
         solves.backends = backends_asked_for();
         SolveResults results = solve_scenes(set.scenes, solves);
         mark_refuted_claims(results.rows);
-        if (!aslib_.empty()) write_aslib_scenario(aslib_, results.rows, solves);
         StudyResult result{backend_table(results.rows) + left_out(solves) + '\n'};
         result.add_rows(results.rows, fields_of_file());
         result.add_rows(results.blocks, kBlockFields);
@@ -241,7 +237,6 @@ class BackendsStudy : public SolveStudy {
     std::vector<std::string> formulations_{"tight"};
     bool warm_start_ = false;
     bool all_rows_ = false;
-    std::string aslib_;
 };
 
 }  // namespace
