@@ -1,10 +1,13 @@
-# The package `conelane`: the core (conelane::detectors) and, where it is asked for and was installed, the component milp
-# (conelane::milp).
+# The package `conelane`: the core (conelane::detectors) and, where they are asked for and were installed, the components
+# milp (conelane::milp) and relaxations (conelane::relaxations).
 include(CMakeFindDependencyMacro)
 include(${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake)
 find_dependency(Eigen3 3.3 NO_MODULE)
 
 set(conelane_components core)
+if("relaxations" IN_LIST conelane_FIND_COMPONENTS)
+    list(APPEND conelane_components milp) # what it stands on
+endif()
 list(APPEND conelane_components ${conelane_FIND_COMPONENTS})
 list(REMOVE_ITEM conelane_components detectors) # another name of the core
 list(REMOVE_DUPLICATES conelane_components)

@@ -1,5 +1,5 @@
 # The libraries of this project: how each is made, and how they are installed as the package `conelane` with a core and
-# the component milp. `find_package(conelane COMPONENTS milp)`; without components, the core alone.
+# the components milp and relaxations. `find_package(conelane COMPONENTS milp)`; without components, the core alone.
 include(CMakePackageConfigHelpers)
 include(${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake)
 

@@ -123,16 +123,11 @@ struct Removed {
     std::string_view word;     ///< or a part of a list
     std::string_view instead;
 };
-constexpr std::string_view kExactSearch = "path-pair, which finds more optima, faster";
-constexpr std::array<Removed, 15> kRemoved{{
-    {"", "lp-rounding", kExactSearch},
-    {"", "nlopt", kExactSearch},
-    {"", "ipopt", kExactSearch},
+constexpr std::array<Removed, 11> kRemoved{{
     {"", "rld-shape-context", "rld-context with --params shape"},
     {"", "clc-no-beam", "clc"},
     {"", "clc-longest", "clc"},
     {"", "clc-delaunay", "clc-paper"},
-    {"study", "relaxations", "study backends"},
     {"study", "anytime", "study backends --solvers path-pair --sizes all --gap-limits"},
     {"study", "confidence-and-colour", "compare --confidence and --color"},
     {"study", "features", "instances, whose index.csv has the features of each problem"},

@@ -2,6 +2,7 @@
 
 #include "conelane/core_solvers.hpp"
 #include "conelane/milp_solvers.hpp"
+#include "conelane/relaxation_solvers.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -11,7 +12,8 @@ namespace conelane {
 std::span<const RldSolverEntry> rld_solvers() {
     static const std::vector<RldSolverEntry> kSolvers = [] {
         std::vector<RldSolverEntry> all;
-        for (const std::span<const RldSolverEntry> part : {core_solvers(), milp_solvers()})
+        for (const std::span<const RldSolverEntry> part :
+             {core_solvers(), milp_solvers(), relaxation_solvers()})
             all.insert(all.end(), part.begin(), part.end());
         return all;
     }();

@@ -7,7 +7,7 @@
 
 namespace conelane {
 
-/// All solvers of this build: those of the core and of the component milp.
+/// All solvers of this build: those of the core and of the components milp and relaxations.
 [[nodiscard]] std::span<const RldSolverEntry> rld_solvers();
 
 /// The entry of that name, or nullptr if there is none.

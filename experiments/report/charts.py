@@ -16,7 +16,8 @@ TOP_SHARE = {"marker": "*", "markersize": 11, "linestyle": "", "color": ACCENT} 
 
 @dataclass
 class Curve:
-    """`points`: (x, y) or, with error bars, (x, y, below, above). `draw`: a line, "steps", "bins", of which x are the edges."""
+    """`points`: (x, y) or, with error bars, (x, y, below, above). `draw`: a line, "steps", "bins", of which x are the edges,
+    or "filled" ones."""
 
     label: str
     points: object
@@ -24,10 +25,10 @@ class Curve:
     draw: str = "line"
 
     def on(self, axes):
-        if self.draw == "bins":
+        if self.draw in ("bins", "filled"):
             edges, counts = self.points
             look = {key: value for key, value in self.style.items() if key != "marker"} | {"linewidth": 1.4}
-            axes.stairs(counts, edges, label=self.label, **look)
+            axes.stairs(counts, edges, label=self.label, **{"fill": True, **self.style} if self.draw == "filled" else look)
             return
         x, y, *error = np.array(self.points, dtype=float).T
         if self.draw == "steps":

@@ -3,7 +3,7 @@
 #include "experiments/studies/solve_study.hpp"
 #include "experiments/studies/study.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/milp/linear_relaxation.hpp"
+#include "solvers/relaxation/linear_relaxation.hpp"
 
 #include <algorithm>
 #include <cmath>

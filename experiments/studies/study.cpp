@@ -24,7 +24,7 @@ StudyResult SceneStudy::run() {
 std::vector<std::unique_ptr<Study>> make_studies() {
     std::vector<std::unique_ptr<Study>> studies;
     for (const auto make : {make_optimality_study, make_backends_study, make_growth_study,
-                            make_formulations_study, make_front_beam_study})
+                            make_formulations_study, make_relaxations_study, make_front_beam_study})
         studies.push_back(make());
     return studies;
 }

@@ -81,5 +81,6 @@ class SceneStudy : public Study {
 [[nodiscard]] std::unique_ptr<Study> make_front_beam_study();
 [[nodiscard]] std::unique_ptr<Study> make_growth_study();
 [[nodiscard]] std::unique_ptr<Study> make_optimality_study();
+[[nodiscard]] std::unique_ptr<Study> make_relaxations_study();
 
 }  // namespace conelane::experiments

@@ -186,7 +186,8 @@ def collect(folder):
         stored["rows"] += backend_rows(lines(name))
     stored["rows"] += size_rows(lines("backends_sizes"))
     keys = ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap", "median_gap", "mean_nodes", "median_ms"]
-    stored["rows"] += [{"table": "formulations"} | {key: rounded(line[key]) for key in keys} for line in lines("formulations")]
+    for name, of in (("formulations", keys), ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"])):
+        stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in of} for line in lines(name)]
     stored["rows"] += growth_rows(lines("growth"))
     stored["rows"] += anytime_rows(lines("anytime"))
     with open(os.path.join(runs, "verified.txt"), encoding="utf-8") as stream:
@@ -247,6 +248,14 @@ def formulation_table(rows):
         "columns": "{columns:.0f}", "rows": "{rows:.0f}", "entries": "{entries:.0f}",
         "LP gap, mean (median)": lambda row: f"{percent(row['mean_gap'], 2)} % ({percent(row['median_gap'], 2)} %)", "nodes": "{mean_nodes:.1f}",
         "median ms": times("median_ms")}, rows)
+
+
+def relaxation_table(rows):
+    lines = []
+    for (solver,), cells in grouped(rows, ("solver",)).items():
+        of_size = {row["cones"]: [f"{percent(row['optimal'] / row['feasible'])} %", milliseconds(row["median_ms"])] for row in cells}
+        lines.append([f"`{solver}`", *of_size[12], *of_size[30]])
+    return table(["", "finds the optimum, n = 12", "median ms", "finds the optimum, n = 30", "median ms"], lines)
 
 
 def growth_table(rows, title="nearest cones", label="{nearest}"):
@@ -319,7 +328,7 @@ def gap_table(rows):
                  lines)
 
 
-TABLES = {"solvers": ("backends", solver_table), "solvers by size": ("sizes", size_table), "formulations": ("formulations", formulation_table),
+TABLES = {"solvers": ("backends", solver_table), "solvers by size": ("sizes", size_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
           "growth of path-pair": ("growth", growth_table), "growth by density": ("growth by density", lambda rows: class_table(rows, "density")),
           "growth by edges": ("growth by edges", lambda rows: class_table(rows, "edges")), "within a limit": ("anytime", anytime_table),
           "certificates": ("certificates", certificate_table), "width of the beam": ("beam", beam_table),

@@ -62,7 +62,7 @@ consumer_test(components ${CMAKE_CXX_COMPILER} consumer_prefix -D conelane_ROOT=
               -D CONELANE_COMPONENTS=ON)
 add_test(NAME consumer.components_agree COMMAND ${consumer}/components/components)
 set_tests_properties(consumer.components_agree PROPERTIES FIXTURES_REQUIRED consumer_components
-                                                          PASS_REGULAR_EXPRESSION "path-pair -4\ncbc -4")
+                                                          PASS_REGULAR_EXPRESSION "path-pair -4\ncbc -4\nlp-rounding -4")
 
 # The package names no path of the machine that built it, and at most 25 headers are public.
 add_test(NAME consumer.package_is_relocatable

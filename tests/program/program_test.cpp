@@ -13,7 +13,7 @@ TEST_F(Program, HelpIsEverywhere) {
     run_well("--help");
     for (const char* command : {"scenes", "detect", "methods", "solve", "solvers", "check", "score",
                                 "compare", "sweep", "merge", "study", "study formulations",
-                                "study optimality", "study backends", "study front-beam", "report", "tune"}) {
+                                "study optimality", "study backends", "study relaxations", "study front-beam", "report", "tune"}) {
         const Outcome help = run_well(std::string(command) + " --help");
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
     }

@@ -1,8 +1,8 @@
 // What the relaxation of each formulation proves without branching.
 
 #include "model/lane_graph_model.hpp"
-#include "solvers/milp/linear_relaxation.hpp"
 #include "solvers/registry.hpp"
+#include "solvers/relaxation/linear_relaxation.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"
 

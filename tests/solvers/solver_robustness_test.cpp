@@ -7,6 +7,7 @@
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
+#include "solvers/relaxation/relaxation_solver.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
@@ -254,6 +255,23 @@ TEST(FailingBackend, IsAnErrorWithAMessageThatKeepsAFeasibleStart) {
         EXPECT_EQ(started.lane_graph, kFourConesLane);
         EXPECT_NEAR(started.objective.value_or(0.0), -2.0, 1e-9);
     }
+}
+
+TEST(FailingBackend, ARelaxationThatThrowsIsAnErrorToo) {
+    const LaneGraphProblem problem = make_problem(four_cones(), {});
+    const auto solver =
+        make_relaxation_solver([](const LaneGraphProblem&, const std::vector<double>&,
+                                  const Deadline&) -> std::optional<std::vector<double>> { throw 7; });
+    EXPECT_EQ(solver->solve(problem, {}).status, SolveStatus::error);
+    EXPECT_EQ(solver->solve(problem, {.start = &kFourConesLane}).lane_graph, kFourConesLane);
+}
+
+TEST(FailingBackend, OutOfMemoryIsPassedOn) {
+    const LaneGraphProblem problem = make_problem(four_cones(), {});
+    const auto solver = make_relaxation_solver(
+        [](const LaneGraphProblem&, const std::vector<double>&,
+           const Deadline&) -> std::optional<std::vector<double>> { throw std::bad_alloc(); });
+    EXPECT_THROW((void)solver->solve(problem, {}), std::bad_alloc);
 }
 
 }  // namespace

@@ -179,3 +179,22 @@ def formulations(results, published):
         column("columns", fixed, "columns", digits=0), column("rows", fixed, "rows", digits=0), column("LP gap, median %", percent, "median_gap"),
         column("LP gap, mean %", percent, "mean_gap"), column("nodes", fixed, "mean_nodes"), column("build ms", milliseconds, "median_build_ms"),
         column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms")], rows, note=results.origin(rows[0]).strip())
+
+
+@Experiment
+def relaxations(results, published):
+    """Relaxations
+    Claim: Does relaxing the binary constraints decrease latency, and how much accuracy does it cost?
+    Protocol: every solver that proves nothing, and `path-pair`, which gives the optimum, on the n nearest cones; one
+    thread, the problem's making included. Gap: (objective - least cost) divided by the larger of 1 and the least cost's
+    size, over the answered scenes. Accurate: the RLD paper's four checks, a solve without an answer counts as inaccurate.
+    Source: this project; the question is the RLD paper's own, V.
+    Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl"""
+    rows = results.stored("relaxations.jsonl", {"solver": TEXT} | dict.fromkeys(("cones", "scenes", "feasible", "answered", "optimal"), WHOLE) |
+                          dict.fromkeys(("accurate", "median_ms", "p95_ms", "worst_ms"), NUMBER))
+    return table("relaxations", [
+        column("n", count, "cones"), column("solver", text, "solver"),
+        *(column(key, count, key) for key in ("scenes", "feasible", "answered", "optimal")),
+        column("mean gap %", percent, "mean_gap", digits=2), column("worst gap %", percent, "worst_gap"), column("accurate %", percent, "accurate"),
+        column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms"), column("max ms", milliseconds, "worst_ms")],
+        rows, note=results.origin(rows[0]).strip())

@@ -85,6 +85,34 @@ def ratio(title, of):
     return column(title, fixed, lambda row: of(row)[0], digits=2, interval=lambda row: of(row)[1])
 
 
+@Experiment
+def paired_latency(results, published):
+    """Paired latencies
+    Claim: By what factor do methods of the same cone set differ in time on the same scene?
+    Protocol: geometric mean over scenes of a method's time divided by that of the method with the least
+    geometric mean on the same cone set, of the comparison and of the sweep; 2.00 is twice the time. 95 % bootstrap
+    interval, tracks resampled.
+    Source: this project.
+    Command: conelane compare --methods rld-cbc,rld-paper --out RESULTS"""
+    of_set = {}  # by cone-set size: of the comparison, then of the sweep where that has no two
+    for sample in results.samples:
+        of_set.setdefault(sample.nearest, []).append(sample)
+    of_set = {nearest: samples for nearest, samples in of_set.items() if len(samples) > 1}
+    for size in sorted({sample.nearest for sample in results.sweep} - set(of_set)):
+        of_set[size] = [sample for sample in results.sweep if sample.nearest == size]
+    rows = []
+    for samples in of_set.values():
+        fastest = measures.fastest_of(samples)
+        rows += [{"sample": sample, "fastest": fastest, "ratio": found} for sample in samples
+                 if sample is not fastest and (found := measures.latency_ratio(sample, fastest))]
+    if not rows:
+        raise Missing("no two methods saw the same cone sets.")
+    return table("ratios", [
+        Column("method", lambda row: method_cell(results, row["sample"].method, row["sample"].label), "text"),
+        column("against", text, lambda row: row["fastest"].label), ratio("time ratio", lambda row: row["ratio"]),
+        column("scenes of both", count, lambda row: row["ratio"][2])], rows, note="Small: 95 % interval.")
+
+
 def profile_figure(solves, style_of, is_solved, label="label"):
     """Of samples, or solves of backends, on the scenes that all have; also the number of these. None where there are none."""
     scenes = sorted(set.intersection(*(set(one.scene) for one in solves)))

@@ -13,6 +13,7 @@ conelane(sweep --tracks generated:straight generated:circle --methods rld-cbc,rl
 set(scenes ${RESULTS}/scenes.scenes.jsonl)
 conelane(study optimality --params default,shape --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
 conelane(study backends --warm-start --permutations 1 --gap-limits 0.1,1 --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
+conelane(study relaxations --scenes ${scenes} --sizes 8 --limit 4 --out ${RESULTS}/relaxations.jsonl)
 conelane(study growth --scenes ${scenes} --sizes 6,12 --limit 6 --out ${RESULTS}/growth.jsonl)
 conelane(study formulations --scenes ${scenes} --sizes 6 --limit 10 --out ${RESULTS}/formulations.jsonl)
 conelane(race --tracks generated:kidney --methods front,none --fp 0,0.3 --out ${RESULTS}/race)

@@ -19,7 +19,6 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from report.methods import described  # noqa: E402  (the package of the page lies there)
 
 PROGRAM, RESULTS = sys.argv[1:3]
-# Google Benchmark may be missing where this was built.
 VOID = {"meta", "link", "input", "br"}
 
 
@@ -147,9 +146,9 @@ class ReportPage(unittest.TestCase):
                      "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
                      "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start",
                      "growth-size", "growth-density", "race-finished", "race-table", "race-replay",
-                     "formulations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
-                     "rld-fig-7-circle", "clc-table-1", "clc-table-2", "clc-fig-11",
-                     "clc-fig-15", "profile-12"):
+                     "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
+                     "rld-fig-7-circle", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
+                     "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
             self.assertTrue(name in self.page.ids, name)
         absent = "".join(re.findall(r'<div class="absent">(.*?)</div>', self.text, flags=re.S))
         self.assertEqual(re.findall(r"<b>(.*?)</b>", absent),
@@ -157,18 +156,18 @@ class ReportPage(unittest.TestCase):
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
-        self.assertEqual(len(articles), 22)
+        self.assertEqual(len(articles), 27)
         for article in articles:
             self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
             self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
                              ["Protocol", "Source", "Command"])
         of_papers = [article for article in articles if re.match(r".*?<h3>(RLD|CLC) (Fig|Table)", article, flags=re.S)]
-        self.assertEqual(len(of_papers), 7)
+        self.assertEqual(len(of_papers), 10)
         for article in of_papers:
             self.assertIn("<dt>Published</dt>", article)
             self.assertIn('<p class="claim">The paper claims: ', article)
             self.assertRegex(article, r'<p class="judged"><b[^>]*>(Holds here|Does not hold here)</b> for |Not judged here')
-        self.assertEqual(self.text.count('<p class="claim">The paper claims: '), 7)  # and no other heading is a claim
+        self.assertEqual(self.text.count('<p class="claim">The paper claims: '), 10)  # and no other heading is a claim
 
     def test_every_figure_says_what_to_see(self):
         figures = re.findall(r'<figure id="([^"]*)"[^>]*>.*?<figcaption>(.*?)</figcaption></figure>', self.text, flags=re.S)
@@ -262,6 +261,12 @@ class ReportPage(unittest.TestCase):
         exactness = re.search(r'<section id="exactness">(.*?)</section>', self.text, flags=re.S)[1]
         for names in re.findall(r"<li>([^<]*) minimise one objective", exactness):
             self.assertFalse("rld-pair" in names and "rld-shape" in names, names)
+
+    def test_no_paired_ratio_is_below_one(self):
+        ratios = [float(value) for value in re.findall(r'<td class="number" data-value="([\d.]+)">\d+\.\d\d <small>',
+                                                       part(self.text, "table", "ratios"))]
+        self.assertGreater(len(ratios), 2)
+        self.assertGreaterEqual(min(ratios), 1.0)
 
     def test_choosing_a_method_reaches_the_curves(self):
         self.assertEqual(set(re.findall(r'<g data-curve="([^"]*)"', part(self.text, "figure", "success-by-rate"))), {"rld-cbc", "rld-pair", "clc"})
@@ -555,7 +560,7 @@ class ReportPage(unittest.TestCase):
 
     def test_without_scenes_it_says_so(self):
         def strip(copy):
-            for name in ("scenes.scenes.jsonl", "optimality.jsonl", "backends.jsonl", "formulations.jsonl",
+            for name in ("scenes.scenes.jsonl", "optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl",
                          "growth.jsonl"):
                 os.unlink(os.path.join(copy, name))
             for name in ("sweep", "race"):
@@ -564,7 +569,7 @@ class ReportPage(unittest.TestCase):
         self.assertIn("the results hold no scenes.scenes.jsonl", text)
         for complaint in ("there is no sweep over cone-set sizes.", "there is no optimality.jsonl.",
                           "there is no backends.jsonl.", "there is no formulations.jsonl.",
-                          "there is no growth.jsonl.", "there is no race/race.json."):
+                          "there is no growth.jsonl.", "there is no relaxations.jsonl.", "there is no race/race.json."):
             self.assertIn(complaint, text)
         self.assertIn("<code>conelane compare --by-size --out RESULTS/sweep</code>", text)
         self.assertEqual(Page(text).wrong, [])

@@ -196,6 +196,50 @@ TEST(Formulations, DifferInSizeAndGap) {
     }
 }
 
+TEST(Relaxations, AreEverySolverWithoutProofBesidePathPair) {
+    const StudyResult result = measured("relaxations", "--sizes 8,12,500 --time-limit 1000000",
+                                        scenes_of({"generated:straight"}, 0.3, 12.0));
+    EXPECT_FALSE(result.errors.any_answered_nothing());
+    const auto heuristics = std::ranges::count_if(
+        rld_solvers(), [](const RldSolverEntry& entry) { return !entry.has(SolverTrait::exact); });
+    ASSERT_GT(heuristics, 0);
+    const std::size_t of_size = 1 + static_cast<std::size_t>(heuristics);
+    ASSERT_EQ(result.rows.size(), 2 * of_size);
+    for (std::size_t k = 0; k < result.rows.size(); ++k) {
+        const Json &row = result.rows[k], &exact = result.rows[k / of_size * of_size];
+        SCOPED_TRACE(row.dump());
+        EXPECT_EQ(row["cones"], k < of_size ? 8 : 12);
+        EXPECT_EQ(exact["solver"], "path-pair");
+        EXPECT_GT(exact["feasible"], 3U);
+        EXPECT_EQ(exact["optimal"], exact["feasible"]);
+        EXPECT_EQ(exact["worst_gap"], 0.0);
+        EXPECT_EQ(row["scenes"], exact["scenes"]);
+        EXPECT_EQ(row["feasible"], exact["feasible"]);
+        EXPECT_LE(row["optimal"], row["answered"]);
+        EXPECT_LE(row["answered"], row["feasible"]);
+        if (row.contains("mean_gap")) {
+            EXPECT_LE(row["mean_gap"], row["worst_gap"]);
+            EXPECT_EQ(row["optimal"] == row["answered"], row["worst_gap"] < 1e-6);
+        }
+        EXPECT_LE(row["median_ms"], row["p95_ms"]);
+        EXPECT_LE(row["p95_ms"], row["worst_ms"]);
+    }
+}
+
+TEST(Relaxations, AreAccurateWithoutFalseCones) {
+    const StudyResult result = measured("relaxations", "--sizes 8 --time-limit 1000000 --limit 2",
+                                        scenes_of({"generated:straight"}, 0.0, 12.0));
+    for (const Json& row : result.rows) {
+        EXPECT_EQ(row["scenes"], 2U);
+        // Other heuristics may not find even this lane.
+        if (row["solver"] == "path-pair" ||
+            std::ranges::count(relaxation_solvers(), row["solver"].get<std::string>(),
+                               &RldSolverEntry::name) > 0) {
+            EXPECT_EQ(row["accurate"], 1.0) << row;
+        }
+    }
+}
+
 TEST(FrontBeam, AWiderBeamMeetsTheBestLaneAtLeastAsOften) {
     const SceneSet set = scenes_of({"generated:kidney@3"}, 0.4, 12.0);
     const StudyResult result = measured("front-beam", "--beams 1,15 --reference-beam 200", set);
