@@ -216,10 +216,6 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->capture_default_str();
 }
 
-void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description) {
-    command.add_option("--seed", seed, description)->check(CLI::Validator(seed_fault, ""));
-}
-
 RldParameters ParameterSource::load() const {
     DetectorOptions options;
     apply_to(options);

@@ -79,8 +79,6 @@ CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::
 /// option that names a file counts as an input, a track by its SPEC, a scenes file with its companion. Throws
 /// CLI::ValidationError naming both.
 void refuse_lost_inputs(CLI::App& command);
-/// --seed N, if the default is set elsewhere
-void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description);
 /// --shard I/N; throws CLI::ValidationError for anything else
 void add_shard_option(CLI::App& command, Shard& shard, const std::string& description);
 /// --threads T

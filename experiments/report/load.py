@@ -15,7 +15,7 @@ from .records import NUMBER, TEXT, WHOLE, InputError, label_of, read_json, read_
 # RLD paper's topologies, all candidates scored.
 BESIDE = ("sweep", "topologies", "candidates")
 # Files of `conelane study` that make a page without a comparison.
-STUDIES = ("optimality.jsonl", "backends.jsonl", "anytime.jsonl", "growth.jsonl", "formulations.jsonl", "relaxations.jsonl")
+STUDIES = ("optimality.jsonl", "backends.jsonl", "growth.jsonl", "formulations.jsonl", "relaxations.jsonl")
 SUCCESSES = ("ground_truth", "near_ground_truth", "too_short", "diverging_from_20")
 CATEGORIES = SUCCESSES + ("diverging_below_20", "none")
 PAPER_CONDITION = "paper"

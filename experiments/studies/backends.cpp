@@ -4,7 +4,6 @@
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/studies/aslib.hpp"
 #include "experiments/studies/backend_measures.hpp"
 #include "experiments/studies/machine.hpp"
 #include "experiments/studies/solve_study.hpp"
@@ -124,8 +123,6 @@ class BackendsStudy : public SolveStudy {
             ->excludes("--warm-start", "--gap-limits");
         add_shard_option(command, shard_,
                          "every N-th course from the I-th on, I from 0; join them by --stored");
-        command.add_option("--aslib", aslib_,
-                           "a folder for the runs and features of the instances as a scenario of ASlib");
     }
 
   protected:
@@ -141,7 +138,6 @@ class BackendsStudy : public SolveStudy {
         const std::vector<AnnotatedScene> scenes = of_shard(set.scenes);
         SolveResults results = solve_scenes(scenes, solves);
         mark_refuted_claims(results.rows);
-        if (!aslib_.empty()) write_aslib_scenario(aslib_, results.rows, solves);
         StudyResult result{left_out(solves)};
         result.add_rows(results.rows, fields_of_file());
         for (Json& row : result.rows) row["parameters"] = parameters;
@@ -246,7 +242,6 @@ class BackendsStudy : public SolveStudy {
     std::string reference_;
     std::vector<std::string> stored_;
     Shard shard_;
-    std::string aslib_;
 };
 
 }  // namespace

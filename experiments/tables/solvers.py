@@ -6,7 +6,7 @@ import random
 import re
 from statistics import fmean
 
-from cells import UNKNOWN, columns_table, grouped, is_close, lines_of, mean, median, pair, percent, provenance, quantile, rounded, share, table
+from cells import UNKNOWN, columns_table, grouped, lines_of, mean, median, pair, percent, provenance, quantile, rounded, share, table
 
 RATES = [0.0, 0.1, 0.3, 0.5]
 LANES = ["beam", "candidate", "choice", "beside"]
@@ -15,6 +15,7 @@ PROVEN = ("optimal", "infeasible")
 GAPS = [("none", 1e-6), ("to 1 %", 0.01), ("to 10 %", 0.1), ("above", math.inf)]
 DENSITIES = [4, 5, 6, 7, 10]
 EDGES = [100, 200, 300, 500, 1000]
+LIMITS_MS = [5.0, 20.0, 50.0, 100.0, 200.0, 500.0, 2000.0]
 BEAM_KEYS = ["beam", "drop", "scenes", "best_score", "first_usable", "usable", "any_usable", "iou", "median_ms", "p95_ms", "worst_ms"]
 BEAM = 15  # what front takes
 DENSE = "eufs_comp_2021"  # a course whose cones are 1.7 m apart
@@ -69,14 +70,22 @@ def growth_rows(lines):
     return rows
 
 
+def known_at(line, limit):
+    """Objective and bound, None where unknown, when a limit ended the search of a line of the study of backends."""
+    steps = [step for step in line["steps"] if step["time_ms"] <= 1.1 * limit + 1.0]
+    return (steps[-1].get("objective"), steps[-1].get("bound")) if steps else (None, None)
+
+
 def anytime_rows(lines):
-    """The study's own table: what is known when a limit ends the search."""
+    """What is known when a limit ends the search; the best lane graph is that of the longest limit."""
     rows = []
-    for (limit,), cell in sorted(grouped(lines, ("limit_ms",)).items()):
-        unproven = [line for line in cell if not line["proven"]]
-        close = list(filter(is_close, unproven))
-        gaps = [line["gap"] for line in unproven if "gap" in line]
-        rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": len(close),
+    cell = [line for line in lines if "scene" in line]
+    for limit in LIMITS_MS:
+        unproven = [line for line in cell if not (line["status"] in PROVEN and line["latency_ms"] <= limit)]
+        known = [(line.get("objective"), *known_at(line, limit)) for line in unproven]
+        close = sum(objective is not None and objective - best <= 0.01 * max(1.0, abs(best)) for best, objective, _ in known)
+        gaps = [max(0.0, best - bound) / max(1.0, abs(best)) for best, _, bound in known if best is not None and bound is not None]
+        rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": close,
                      "gap": rounded(median(gaps)) if gaps else None})
     return rows
 
@@ -166,11 +175,9 @@ def collect(folder):
 
     for name in ("backends", "backends_main"):
         stored["rows"] += backend_rows(lines(name))
-    for name, keys in (("formulations", ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap",
-                                         "median_gap", "mean_nodes", "median_ms"]),
-                       ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"]),
-                       ("confidence", ["known", "false_positive_rate", "scenes", "accurate", "success"])):
-        stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in keys} for line in lines(name)]
+    keys = ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap", "median_gap", "mean_nodes", "median_ms"]
+    for name, of in (("formulations", keys), ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"])):
+        stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in of} for line in lines(name)]
     stored["rows"] += growth_rows(lines("growth"))
     stored["rows"] += anytime_rows(lines("anytime"))
     with open(os.path.join(runs, "verified.txt"), encoding="utf-8") as stream:
@@ -276,15 +283,6 @@ def proven_table(rows):
                        lambda row: f"{percent(row['proven'])} ({percent(row['proven_without_dense'])})"))
 
 
-def confidence_table(rows):
-    rates = sorted({row["false_positive_rate"] for row in rows})
-    labels = {only(known=row["known"]): row["known"] for row in rows}
-    accurate, success = ([only(false_positive_rate=rate) for rate in some] for some in (rates, rates[-1:]))
-    header = [f"accurate at {percent(rate, 0 if rate in (0.0, 0.5) else 1)} %" for rate in rates]
-    return table(["", *header, f"success at {percent(rates[-1], 0)} %"],
-                 [first + last[1:] for first, last in zip(pivot(rows, labels, accurate, share("accurate")), pivot(rows, labels, success, share("success")))])
-
-
 def exactness_table(rows):
     labels = {"scenes with both": "{scenes} of {of}".format_map, "the candidate is the optimum, % of these": share("equal"),
               "success of the optimum, %": share("optimum"), "success of that candidate, %": share("candidate"),
@@ -316,7 +314,7 @@ TABLES = {"solvers": ("backends", solver_table), "formulations": ("formulations"
           "growth by edges": ("growth by edges", lambda rows: class_table(rows, "edges")), "within a limit": ("anytime", anytime_table),
           "certificates": ("certificates", certificate_table), "width of the beam": ("beam", beam_table),
           "proven by path-pair": ("proven", proven_table),
-          "confidence and colour": ("confidence", confidence_table), "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
+          "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
           "exactness by gap": ("gaps", gap_table)}
 
 

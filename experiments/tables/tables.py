@@ -16,7 +16,6 @@ import sys
 import beam_picture
 import engines
 import held_out
-import parameter_sets
 import reproduce
 import shipped
 import solvers
@@ -70,7 +69,7 @@ def all_tables(stored):
         texts |= module.tables(stored[kind])
         runs |= stored[kind].get("runs", {})
     judge = read_json(JUDGE)
-    return texts | parameter_sets.tables(ROOT) | {"judge of twelve cones": held_out.judge_table(judge), "runs": runs_table(runs | judge["runs"])}
+    return texts | {"judge of twelve cones": held_out.judge_table(judge), "runs": runs_table(runs | judge["runs"])}
 
 
 def strangers(stored):

@@ -101,9 +101,9 @@ TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParam
     EXPECT_THAT(training_courses("clc-paper"), Not(Contains("slalom@23")));
     EXPECT_THAT(training_courses("clc"), Not(Contains("circle")));
     EXPECT_THAT(training_courses("delaunay-beam"), Contains("fsd_1"));
-    EXPECT_THAT(training_courses("rld-shape-context"), Contains("fsd_6"));
+    EXPECT_THAT(training_courses("rld-shape"), Contains("fsd_6"));
     EXPECT_THAT(training_courses("rld-learned"), AllOf(Contains("fsd_6"), Contains("kidney@4")));
-    for (const char* const none : {"rld-pair", "rld-context", "clc-longest", "no detector"})
+    for (const char* const none : {"rld-pair", "rld-context", "no detector"})
         EXPECT_THAT(training_courses(none), IsEmpty()) << none;
 }
 

@@ -11,10 +11,9 @@ using testing::Not;
 
 TEST_F(Program, HelpIsEverywhere) {
     run_well("--help");
-    for (const char* command :
-         {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
-          "study", "study formulations", "study optimality", "study backends", "study relaxations",
-          "study confidence-and-colour", "study front-beam", "report", "tune"}) {
+    for (const char* command : {"scenes", "detect", "methods", "solve", "solvers", "check", "score",
+                                "compare", "sweep", "merge", "study", "study formulations",
+                                "study optimality", "study backends", "study relaxations", "study front-beam", "report", "tune"}) {
         const Outcome help = run_well(std::string(command) + " --help");
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
     }
@@ -33,15 +32,6 @@ TEST_F(Program, TheVersionNamesCommitCompilerAndSolvers) {
     const std::string version = run("--version").output;
     EXPECT_THAT(version,
                 testing::MatchesRegex("conelane [0-9.]+\ncommit .+\ncompiler .+\nsolvers .*path-pair.*\n"));
-}
-
-TEST_F(Program, DetectorsForUsersComeFirstAndAblationsOnRequest) {
-    const std::string some = run("methods").output;
-    const std::string all = run("methods --all").output;
-    EXPECT_THAT(some, HasSubstr("rld-pair "));
-    EXPECT_THAT(some, Not(HasSubstr("clc-no-beam")));
-    EXPECT_THAT(all, HasSubstr("clc-no-beam"));
-    EXPECT_THAT(all, testing::StartsWith(some));
 }
 
 /// No scene is an error, and line numbers count blank lines.

@@ -295,7 +295,7 @@ TEST_F(CrossCheckRun, AnotherRunInTheFolderIsRefusedAndStays) {
     EXPECT_EQ(error_of([&] { (void)cross_check(some, path("cases")); }),
               "cases/cases.jsonl:1: holds a run with other options or of another program");
     EXPECT_EQ(lines("cases"), before);
-    some.solvers = {"lp-rounding"};
+    some.solvers = {"magic"};
     EXPECT_THROW((void)cross_check(some, path("other")), InvalidInput);
     EXPECT_FALSE(std::filesystem::exists(path("other")));
 }
@@ -381,7 +381,7 @@ TEST_F(CrossCheckRun, TheProgramSaysWhatItFoundAndWhatIsWrong) {
     EXPECT_THAT(good.output, HasSubstr("6 of them by this run"));
     expect_refused("cross-check --out cases --cases 6 --solvers path-pair", {"cases/cases.jsonl:1"});
     expect_refused("cross-check --cases 6", {"--out"});
-    expect_refused("cross-check --out other --solvers ipopt", {"--solvers", "ipopt"});
+    expect_refused("cross-check --out other --solvers ipopt", {"ipopt", "path-pair"});
     expect_refused("cross-check --out other --scenes nothing", {"nothing"});
     expect_refused("cross-check --replay nothing.case.json", {"nothing.case.json"});
     file_with("{\"case\": 1}", "bad.case.json");

@@ -1,11 +1,9 @@
-// The evaluation of rows in the study of backends: refuted claims, permutations, measures, ASlib.
+// The evaluation of rows in the study of backends: refuted claims, permutations, measures.
 
 #include "experiments/studies/backend_measures.hpp"
 
 #include "evaluation/formats/scene_set.hpp"
-#include "experiments/studies/aslib.hpp"
 #include "experiments/studies/machine.hpp"
-#include "tests/support/file_test.hpp"
 #include "tests/support/straight_scene.hpp"
 #include "tests/support/testing.hpp"
 
@@ -182,33 +180,6 @@ TEST(Permutations, DoNotChangeAnOptimum) {
                                                  "tight rows, on demand; settings: defaults; no start",
                                                  "printed rows, on demand; settings: tuned; no start",
                                                  "tight rows, all; settings: tuned; no start"));
-}
-
-class AslibScenario : public FileTest {};
-
-TEST_F(AslibScenario, HasEveryRunAndInstance) {
-    const SceneSet set = some_scenes();
-    SolveOptions options;
-    options.sizes = {8};
-    options.permutations = 1;
-    options.backends = {backend_of("path-pair"), backend_of("clp-bb")};
-    const std::vector<SolveRow> rows = solve_scenes(set.scenes, options).rows;
-    write_aslib_scenario(path("aslib"), rows, options);
-    const auto data_lines = [&](const std::string& name) {
-        const std::string text = text_of(path("aslib") / name);
-        const std::size_t data = text.find("@DATA\n");
-        EXPECT_NE(data, std::string::npos) << name;
-        return static_cast<std::size_t>(
-                   std::count(text.begin() + static_cast<std::ptrdiff_t>(data), text.end(), '\n')) -
-               1;
-    };
-    EXPECT_EQ(data_lines("algorithm_runs.arff"), rows.size());
-    const std::size_t instances = rows.size() / 4;
-    for (const char* name :
-         {"feature_values.arff", "feature_runstatus.arff", "feature_costs.arff", "cv.arff"})
-        EXPECT_EQ(data_lines(name), instances) << name;
-    EXPECT_THAT(text_of(path("aslib") / "description.txt"), HasSubstr("'clp-bb/tight':"));
-    EXPECT_THAT(text_of(path("aslib") / "algorithm_runs.arff"), HasSubstr(" n=8',2,'path-pair',"));
 }
 
 TEST(PeakMemory, SeesWhatIsAllocatedAndFreed) {

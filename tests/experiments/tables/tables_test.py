@@ -199,11 +199,13 @@ class Solvers(unittest.TestCase):
         self.assertIn("| 1000 and more | 1 | 5000 |  |  | 1.00 | 0.0 |", solvers.class_table([row for row in rows if row["table"] == "growth by edges"], "edges"))
 
     def test_what_is_known_when_a_limit_ends_the_search(self):
-        def line(proven, objective=None, gap=None):
-            values = {"limit_ms": 5.0, "proven": proven, "objective": objective, "best_known": -10.0, "gap": gap}
-            return {key: value for key, value in values.items() if value is not None}
-        rows = solvers.anytime_rows([line(True, -10.0), line(True), line(False, -9.95, 0.4), line(False, -8.0, 0.2), line(False)])
+        def line(status, latency_ms, objective=None, *steps):
+            return {"scene": "a", "status": status, "latency_ms": latency_ms, "steps": [
+                {"time_ms": time, "objective": of, "bound": bound} for time, of, bound in steps]} | ({} if objective is None else {"objective": objective})
+        rows = solvers.anytime_rows([line("optimal", 4.0, -10.0), line("infeasible", 1.0), line("optimal", 30.0, -10.0, (5.1, -9.95, -14.0), (30.0, -10.0, -10.0)),
+                                     line("feasible", 2000.0, -10.0, (5.2, -8.0, -12.0), (2000.0, -10.0, -11.0)), line("stopped", 2000.0)])
         self.assertEqual((rows[0]["scenes"], rows[0]["open"], rows[0]["open_close"], rows[0]["gap"]), (5, 3, 1, 0.3))
+        self.assertEqual((rows[-1]["open"], rows[-1]["open_close"], rows[-1]["gap"]), (2, 1, 0.1))
         self.assertIn("| 5 ms | 2 of 5 | 60.0 | 1 of 3 | 30 % |", solvers.anytime_table(rows))
 
     def test_certificates_are_read_off_the_last_line(self):

@@ -129,22 +129,6 @@ TEST(LeftRightDecider, AdvancesTheBoundaryThatIsBehind) {
     EXPECT_EQ(left_right_decision({left, right_level}, kRight), kRight);
 }
 
-TEST(SearchGraph, WithARuleJoinsThePairsOfTheRuleThatAreNear) {
-    const std::vector<Point> points{{0, 0}, {4, 0}, {8, 0}, {4, 3}};
-    const EdgeRule rule = [](std::span<const Point> all) {
-        EXPECT_EQ(all.size(), 4u);
-        return std::vector<std::pair<Vertex, Vertex>>{{1, 0}, {0, 2}, {1, 3}, {3, 1}};
-    };
-    SearchGraph graph;
-    graph.build(points, 5.5, rule);
-    EXPECT_THAT(graph.neighbours(0), ElementsAre(1));
-    EXPECT_THAT(graph.neighbours(1), ElementsAre(0, 3));
-    EXPECT_THAT(graph.neighbours(2), IsEmpty()) << "0 is 8 m off";
-    EXPECT_THAT(graph.neighbours(3), ElementsAre(1));
-    graph.build(points, 5.5);
-    EXPECT_THAT(graph.neighbours(2), ElementsAre(1, 3));
-}
-
 TEST(StepReach, EndsAtTheLastOfTheNearestNeighbours) {
     SearchGraph graph;
     graph.build(std::vector<Point>{{0, 0}, {4, 0}, {1, 0}, {0, 3}, {-2, 0}, {0, 9}}, 5.0);
