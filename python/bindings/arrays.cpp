@@ -1,7 +1,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "evaluation/formats/cone_json.hpp"
+#include "model/position_covariance.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>
@@ -130,7 +130,8 @@ void set_covariances(std::vector<Cone>& cones, const Numbers& given) {
         const std::string key = "covariances[" + std::to_string(i) + "]";
         if (!std::all_of(matrix, matrix + kSize * kSize, [](double value) { return std::isfinite(value); }))
             throw InvalidInput(key, "must be a finite number");
-        cones[i].position_covariance = covariance_of({matrix[0], matrix[1], matrix[2], matrix[3]});
+        cones[i].position_covariance =
+            covariance_of({matrix[0], matrix[1], matrix[2], matrix[3]});
         if (!cones[i].position_covariance) throw InvalidInput(key, "must be symmetric");
         if (!cones[i].position_covariance->is_valid())
             throw InvalidInput(key, "must be positive semidefinite");

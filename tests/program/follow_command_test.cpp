@@ -170,6 +170,29 @@ TEST_F(FollowCommand, ALapGivesTheCourseAndTheStop) {
     EXPECT_NE(plans_in(text_of(path("e.jsonl"))).back().at("state"), "finished");
 }
 
+TEST_F(FollowCommand, APagePlaysTheRunAndSaysWhereThereWasNoLane) {
+    std::vector<Frame> run = frames(6.0);
+    for (std::size_t i = 4; i < 7; ++i) run[i].cones.clear();
+    file_with(lines_of(run), "run.frames.jsonl");
+    const Outcome outcome = follow("--follow run.frames.jsonl --out p.jsonl --page p.html --time-limit inf");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const std::string page = text_of(path("p.html"));
+    const std::string begin = R"(id="race-data">)";
+    const std::size_t from = page.find(begin) + begin.size();
+    const json race = json::parse(page.substr(from, page.find("</script>", from) - from));
+    const std::vector<json> plans = plans_in(text_of(path("p.jsonl")));
+    ASSERT_EQ(race.at("frames").size(), plans.size());
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        EXPECT_EQ(race.at("frames")[i].at("state"), plans[i].at("state")) << i;
+    EXPECT_GT(race.at("frames")[0].at("left").size(), 8U);
+    EXPECT_THAT(page, HasSubstr(R"(data-frame="4")"));
+    EXPECT_THAT(page, HasSubstr("fewer than 3 cones within 20 m ahead"));
+    // A page that cannot be made leaves the old files.
+    EXPECT_EQ(follow("--follow run.frames.jsonl --out p.jsonl --page none/p.html").exit_code, 2);
+    EXPECT_EQ(plans_in(text_of(path("p.jsonl"))), plans);
+    EXPECT_THAT(follow("--follow - --out - --page q.html <run.frames.jsonl").errors, HasSubstr("--page: "));
+}
+
 TEST_F(FollowCommand, ARealSkidpadIsFollowed) {
     const std::filesystem::path file = recorded_data() / "ft_fsd" / "skidpad.json";
     if (!std::filesystem::exists(file)) {

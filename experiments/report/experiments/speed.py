@@ -1,6 +1,5 @@
 """Speed on the same cones, and races driven with the answers."""
 
-import json
 import os
 from html import escape
 
@@ -11,6 +10,7 @@ from ..charts import THIN, Curve, chart, drawn, group, series, time_rules, with_
 from ..experiment import Experiment
 from ..load import Missing
 from ..records import NUMBER, TEXT, WHOLE, YES_OR_NO, InputError, read_json, read_lines, require_all
+from ..replay import player
 from ..summaries import median, percent_label, quantile, race_measures
 from ..tables import Cell, Column, column, count, fixed, method_cell, milliseconds, percent, table, text
 from ..theme import method_style, percent_axis
@@ -148,16 +148,10 @@ def _replay(results):
     if chosen is None:
         return ""
     chosen["frames"] = chosen["frames"][-_MAX_FRAMES:]
-    data = json.dumps(chosen, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     what = (f"{escape(chosen['track'])}, {escape(chosen['method'])}, "
             f"{percent_label(chosen['false_positive_rate'])} % false positives: {escape(chosen['end'])}")
-    return (f'<div id="race-replay"><h4>What was driven: {what}</h4>'
-            '<div class="stage"><canvas id="race-scene" role="img" aria-label="Race, seen from above"></canvas></div>'
-            '<div class="transport"><button type="button" id="race-play" aria-label="play the race">▶</button>'
-            '<input type="range" id="race-frame" min="0" value="0" aria-label="frame"><output id="race-time"></output>'
-            '</div><p class="note">Filled: cones. × false positives. Large: seen in this frame. The line ahead of the car is '
-            'the path it was given.</p>'
-            f'<script type="application/json" id="race-data">{data}</script></div>')
+    note = "Filled: cones. × false positives. Large: seen in this frame. The line ahead of the car is the path it was given."
+    return f'<div id="race-replay"><h4>What was driven: {what}</h4>{player(chosen, note)}</div>'
 
 
 @Experiment
