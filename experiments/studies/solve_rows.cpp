@@ -225,6 +225,7 @@ SolveBlock block_of(const JsonNode& json) {
     SolveBlock block{count_in(json, "nearest"),
                      json.member("backend").string(),
                      json.member("version").string(),
+                     json.member("treatment").string(),
                      json.member("reference_ms").number(),
                      {}};
     if (json.find("peak_bytes")) block.peak_bytes = count_in(json, "peak_bytes");
