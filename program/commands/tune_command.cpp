@@ -41,21 +41,14 @@ struct TuneOptions {
     std::string out;
 };
 
-/// Everything that the figures of parameters depend on; `start` for what tuning does not change.
-ordered_json conditions(const TuneOptions& options, const RldParameters& start) {
+/// What a record has in each tuning.
+ordered_json record_of(const TuneOptions& options) {
     ordered_json json{{"commit", provenance().commit},
-                      {"tracks", options.tracks},
-                      {"objective", to_string(options.evaluation.objective)}};
+                      {"compiler", provenance().compiler},
+                      {"machine", provenance().machine},
+                      {"tracks", options.tracks}};
     json.update(scene_options_json(options.scenes));
-    json.update(ordered_json{{"time_limit_ms", options.evaluation.time_limit_ms},
-                             {"most_nodes", options.evaluation.max_nodes},
-                             {"pairing", to_string(start.pairing)},
-                             {"w_color", start.w_color},
-                             {"shape", has_shape_costs(start)},
-                             {"use_confidence", start.use_confidence},
-                             {"forbid_crossing", start.forbid_crossing}});
-    if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
-    if (options.evaluation.context) json["context"] = *options.evaluation.context;
+    json["evaluations"] = options.tuner.evaluations;
     return json;
 }
 
@@ -80,13 +73,8 @@ void tune_method(TuneOptions& options) {
         Progress progress("tune " + options.detector, tuning.evaluations);
         tuned = tune_detector(recipe, set, tuning, [&] { progress.advance(); });
     }
-    ordered_json record{{"method", options.detector},
-                        {"commit", provenance().commit},
-                        {"compiler", provenance().compiler},
-                        {"machine", provenance().machine},
-                        {"tracks", options.tracks}};
-    record.update(scene_options_json(options.scenes));
-    record["evaluations"] = tuning.evaluations;
+    ordered_json record{{"method", options.detector}};
+    record.update(record_of(options));
     record["figure_of_start"] = describe(tuned.figure_of_start);
     record["figure"] = describe(tuned.figure);
     AtomicFile record_file(record_path(options.out));
@@ -122,13 +110,20 @@ void tune_rld(TuneOptions& options) {
         };
         tuned = tune(evaluate, start, options.tuner);
     }
-    ordered_json record = conditions(options, start);
-    record["evaluations"] = options.tuner.evaluations;
-    record["compiler"] = provenance().compiler;
-    record["machine"] = provenance().machine;
-    record["scenes"] = evaluation.scenes().size();
-    record["figure_of_start"] = tuned.figure_of_start;
-    record["figure"] = tuned.figure;
+    ordered_json record{{"objective", to_string(options.evaluation.objective)}};
+    record.update(record_of(options));
+    record.update(ordered_json{{"time_limit_ms", options.evaluation.time_limit_ms},
+                               {"most_nodes", options.evaluation.max_nodes},
+                               {"pairing", to_string(start.pairing)},
+                               {"w_color", start.w_color},
+                               {"shape", has_shape_costs(start)},
+                               {"use_confidence", start.use_confidence},
+                               {"forbid_crossing", start.forbid_crossing},
+                               {"scenes", evaluation.scenes().size()},
+                               {"figure_of_start", tuned.figure_of_start},
+                               {"figure", tuned.figure}});
+    if (options.evaluation.nearest) record["nearest"] = *options.evaluation.nearest;
+    if (options.evaluation.context) record["context"] = *options.evaluation.context;
     AtomicFile file(record_path(options.out));
     file.stream() << record.dump(2) << '\n';
     file.finish();
