@@ -12,13 +12,9 @@ namespace conelane::experiments {
 namespace {
 
 using testing::AnyOf;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 ConfidenceColorOptions two_folds() {
-    ConfidenceColorOptions options;
-    options.tracks = {"generated:straight", "generated:circle"};
+    ConfidenceColorOptions options{.tracks = {"generated:straight", "generated:circle"}};
     options.scenes.false_positive_rates = {0.5};
     options.scenes.ranges_m = {30.0};
     options.scenes.every_m = 4.0;
@@ -49,8 +45,7 @@ TEST(ConfidenceAndColor, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted)
     EXPECT_EQ(rows[3].accurate, geometry.accurate);
 }
 
-/// A fold whose parameters find no lane has no accurate lane on its held-out tracks; other folds are
-/// unaffected.
+/// A fold whose parameters find no lane has no accurate lane on its held-out tracks; others are unaffected.
 TEST(ConfidenceAndColor, AFoldAnswersForItsHeldOutTracksAlone) {
     ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();

@@ -14,8 +14,6 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-
 /// Replaces scenes: each track is best at its own d_e; its value falls with the distance of d_e from it.
 std::vector<LapFigure> value_by_d_e(const RldParameters& parameters, const std::vector<double>& best_d_e) {
     std::vector<LapFigure> laps;
@@ -27,13 +25,11 @@ std::vector<LapFigure> value_by_d_e(const RldParameters& parameters, const std::
 }
 
 TEST(ParameterRanges, LeadToThePointAndBackAndMoveValuesOutsideToTheBorder) {
-    RldParameters start;
-    start.s_crit = 8.0;
+    RldParameters start{.s_crit = 8.0};
     for (const RldParameters& from : {start, with_shape_costs(start)}) {
         const RldParameters back = from_unit_cube(to_unit_cube(from), from);
-        for (const TunedParameter& tuned : tuned_parameters(from)) {
+        for (const TunedParameter& tuned : tuned_parameters(from))
             EXPECT_NEAR(back.*tuned.value, from.*tuned.value, 1e-4) << tuned.key;
-        }
         EXPECT_EQ(back.w_b, from.w_b);
     }
     start.s_crit = 1.0;
@@ -58,9 +54,7 @@ TEST(ParameterRanges, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
 }
 
 TEST(ParameterRanges, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
-    RldParameters rest;
-    rest.d_t = 1.25;
-    rest.pairing = Pairing::paper;
+    RldParameters rest{.d_t = 1.25, .pairing = Pairing::paper};
     for (const double corner : {0.0, 1.0}) {
         const std::vector<double> point(tuned_parameters(rest).size(), corner);
         const RldParameters parameters = from_unit_cube(point, rest);
@@ -85,8 +79,7 @@ TEST(Tune, FindsTheBestOfATrackAndSaysWhatItWasBefore) {
 }
 
 TEST(Tune, FitsAFoldToTheOtherTracksAlone) {
-    // Tracks 0 and 2 are best at 2, tracks 1 and 3 at 4: a fold is fitted to the tracks that it does not hold
-    // out.
+    // Tracks 0 and 2 are best at 2, tracks 1 and 3 at 4: a fold is fitted to the tracks that it learns from.
     const auto evaluate = [](const RldParameters& p) { return value_by_d_e(p, {2.0, 4.0, 2.0, 4.0}); };
     const Tuned tuned = tune(evaluate, RldParameters{}, {.folds = 2, .evaluations = 300, .seed = 3});
     ASSERT_EQ(tuned.folds.size(), 2U);
@@ -124,8 +117,7 @@ TEST_F(TuningLog, RemembersAcrossRunsAndDropsALineCutShort) {
         ++calls;
         return value_by_d_e(p, {1.0 / 3.0});
     };
-    RldParameters other;
-    other.d_e = 2.0 / 3.0;
+    RldParameters other{.d_e = 2.0 / 3.0};
     std::vector<LapFigure> first;
     {
         EvaluationLog log(path("log"), R"({"seed":1})", evaluate);
@@ -156,17 +148,12 @@ TEST_F(TuningLog, AFileThatIsNoLogStaysAsItIs) {
 }
 
 SceneSet straight_track(double rate) {
-    SceneOptions options;
-    options.false_positive_rates = {rate};
-    options.ranges_m = {30.0};
-    options.every_m = 8.0;
+    SceneOptions options{.false_positive_rates = {rate}, .ranges_m = {30.0}, .every_m = 8.0};
     return make_scene_set({"generated:straight"}, options);
 }
 
 TEST(Evaluation, IsTheSameForAnyNumberOfThreads) {
-    EvaluationOptions options;
-    options.nearest = 12;
-    options.time_limit_ms = 1e5;
+    EvaluationOptions options{.nearest = 12, .time_limit_ms = 1e5};
     const Evaluation one(straight_track(0.3), options);
     options.threads = 2;
     const Evaluation two(straight_track(0.3), options);
@@ -174,9 +161,7 @@ TEST(Evaluation, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Evaluation, CountsSlowScenesAsWorthless) {
-    EvaluationOptions options;
-    options.nearest = 12;
-    options.time_limit_ms = 1e5;
+    EvaluationOptions options{.nearest = 12, .time_limit_ms = 1e5};
     EXPECT_GT(mean_over_scenes(Evaluation(straight_track(0.0), options)(RldParameters{})), 0.9);
     options.max_nodes = -1;
     EXPECT_EQ(mean_over_scenes(Evaluation(straight_track(0.0), options)(RldParameters{})), 0.0);
@@ -211,8 +196,7 @@ TEST(FailureCauses, NameTheTermInWhichTheGroundTruthIsDearest) {
     scene.scene.cones.push_back({20, {3.0, 1.5}});
     scene.scene.cones.push_back({21, {7.0, 1.5}});
     scene.ground_truth = Lane{{0, 1, 2}, {10, 11, 12}};
-    RldParameters parameters;
-    parameters.d_e = 2.0;
+    RldParameters parameters{.d_e = 2.0};
     EXPECT_EQ(diagnose(scene, parameters, {.time_limit_ms = 1e5}).cause, FailureCause::cheaper_benefit);
     parameters.w_s = 0.6;
     EXPECT_EQ(diagnose(scene, parameters, {.time_limit_ms = 1e5}).cause, FailureCause::cheaper_spacing);
@@ -230,8 +214,7 @@ TEST(FailureCauses, SayWhereWrongConesAre) {
               (WrongCones{.far_end = 2, .on_lost_boundary = 5}));
 }
 
-/// The last cones of the cone set are false, in line with both boundaries and nearer than the true ones
-/// behind.
+/// The last cones of the cone set are false, in line with both boundaries, nearer than true ones behind.
 TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
     AnnotatedScene scene;
     scene.scene.id = "false_cone_at_the_end";
@@ -243,9 +226,7 @@ TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
     scene.scene.cones.push_back({.id = 200, .position = {8.6, 2.9}});
     scene.scene.cones.push_back({.id = 201, .position = {8.6, -2.9}});
     scene.ground_truth = Lane{{1, 2, 3, 4, 5, 6, 7, 8}, {101, 102, 103, 104, 105, 106, 107, 108}};
-    EvaluationOptions options;
-    options.nearest = 8;
-    options.time_limit_ms = 1e5;
+    EvaluationOptions options{.nearest = 8, .time_limit_ms = 1e5};
     const RldParameters parameters;
     const Diagnosis without = diagnose(scene, parameters, options);
     EXPECT_NE(without.cause, FailureCause::accurate);
@@ -260,9 +241,8 @@ TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
 }
 
 TEST(ShippedParameters, AreValidAndFoundByName) {
-    for (const std::string_view name : rld_parameter_set_names()) {
+    for (const std::string_view name : rld_parameter_set_names())
         EXPECT_NO_THROW(validate(rld_parameter_set(name).value())) << name;
-    }
     EXPECT_FALSE(rld_parameter_set(std::string_view("n13")));
 }
 

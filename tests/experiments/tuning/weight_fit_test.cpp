@@ -12,25 +12,20 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-using testing::UnorderedElementsAre;
-
 SceneSet scenes_of(const std::vector<std::string>& tracks, double rate) {
-    SceneOptions options;
-    options.false_positive_rates = {rate};
-    options.ranges_m = {30.0};
-    options.every_m = 12.0;
-    options.with_color = true;
-    options.with_confidence = true;
-    options.color_error_rate = 0.3;
+    SceneOptions options{.false_positive_rates = {rate},
+                         .ranges_m = {30.0},
+                         .every_m = 12.0,
+                         .with_color = true,
+                         .color_error_rate = 0.3,
+                         .with_confidence = true};
     return make_scene_set(tracks, options);
 }
 
 double weighted(const ObjectiveSums& sums, const RldParameters& parameters) {
     double sum = 0.0;
-    for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
+    for (std::size_t term = 0; term < kObjectiveTermCount; ++term)
         sum += parameters.*kObjectiveWeights[term] * sums[term];
-    }
     return sum;
 }
 
@@ -52,9 +47,8 @@ TEST(ObjectiveSums, TimesTheWeightsAreTheObjective) {
         RldParameters other = parameters;
         for (double RldParameters::*weight : kObjectiveWeights) other.*weight *= 1.7;
         const ObjectiveSums again = objective_sums(make_problem(evaluated.seen, other), graph);
-        for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
+        for (std::size_t term = 0; term < kObjectiveTermCount; ++term)
             EXPECT_NEAR(sums[term], again[term], 1e-9);
-        }
     }
     EXPECT_GT(solved, 5U);
 }
