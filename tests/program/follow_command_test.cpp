@@ -11,8 +11,6 @@ namespace conelane::experiments {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 json to_json(const Frame& frame, bool with_time) {
     json cones = json::array();
@@ -44,9 +42,8 @@ class FollowCommand : public ProgramFixture {
     static std::vector<Frame> frames(double to_m, bool with_ids = true) {
         std::vector<Frame> all;
         const tests::DrivenCourse course = tests::oval(1);
-        for (int i = 0; 0.6 * i <= to_m; ++i) {
+        for (int i = 0; 0.6 * i <= to_m; ++i)
             all.push_back(tests::frame_at(course, 0.6 * i, 0.1 * i, {.with_ids = with_ids}));
-        }
         return all;
     }
     static std::string lines_of(const std::vector<Frame>& frames, bool with_time = true) {
@@ -55,9 +52,8 @@ class FollowCommand : public ProgramFixture {
         return text;
     }
     std::vector<json> plans_in(const std::string& text) {
-        std::vector<json> plans;
-        for (const std::string& line : ProgramFixture::lines_of(text)) plans.push_back(json::parse(line));
-        return plans;
+        return mapped(ProgramFixture::lines_of(text),
+                      [](const std::string& line) { return json::parse(line); });
     }
 };
 

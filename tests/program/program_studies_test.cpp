@@ -11,30 +11,6 @@ namespace conelane::experiments {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
-
-TEST_F(Program, TrainsFrontAndResumes) {
-    const std::string command =
-        "train front --tracks generated:slalom@1 --hold-out generated:kidney@2 --hold-out-every 80 --fp 0.3 "
-        "--draws 1 --trust-draws 4 --imitation-steps 4 --search-steps 4 --judge-steps 4 --figures-every 6 "
-        "--seed 3 --out ";
-    const Outcome whole = run_well(command + "whole.json");
-    EXPECT_THAT(whole.output, HasSubstr("step 12 of 12, judging"));
-    EXPECT_THAT(whole.output, HasSubstr("usable"));
-    run_well(command + "first.json --checkpoint c.json");
-    const Outcome again = run_well(command + "again.json --checkpoint c.json --threads 2");
-    EXPECT_THAT(again.output, Not(HasSubstr("step"))) << "nothing is left to do";
-    const auto weights = [&](const std::string& file) {
-        auto json = nlohmann::json::parse(text_of(path(file)));
-        json.erase("training");  // a run without remaining work has no figures
-        return json;
-    };
-    EXPECT_EQ(weights("again.json"), weights("whole.json"));
-    const Outcome other = run(command + "other.json --checkpoint c.json --beam 7");
-    EXPECT_EQ(other.exit_code, 2);
-    EXPECT_THAT(other.errors, HasSubstr("c.json"));
-    EXPECT_FALSE(std::filesystem::exists(path("other.json")));
-}
 
 TEST_F(Program, TuneWithContextAndShapeLeavesARecord) {
     const Outcome tuned = run_well(

@@ -90,10 +90,8 @@ class ProgramFixture : public FileTest {
     }
     /// The JSON lines of a file.
     [[nodiscard]] std::vector<nlohmann::json> json_lines(const std::filesystem::path& name) const {
-        std::vector<nlohmann::json> all;
-        for (const std::string& line : lines_of(text_of(path(name))))
-            all.push_back(nlohmann::json::parse(line));
-        return all;
+        return mapped(lines_of(text_of(path(name))),
+                      [](const std::string& line) { return nlohmann::json::parse(line); });
     }
     /// The rows of results.jsonl without everything that depends on the clock, and without the record of the
     /// run, because that of a merged run names no shard.

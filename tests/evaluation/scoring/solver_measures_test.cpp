@@ -10,9 +10,7 @@
 namespace conelane {
 namespace {
 
-using testing::DoubleEq;
 using testing::DoubleNear;
-using testing::ElementsAre;
 
 constexpr double kLimit_ms = 100.0;
 
@@ -63,8 +61,7 @@ TEST(SolverMeasures, DistancesAreBetweenZeroAndOne) {
     EXPECT_DOUBLE_EQ(relative_distance({}, 2.0), 1.0);
 }
 
-/// Nothing for 10 ms, then half as good, then the optimum; the bound starts at 2.5 times and is closed at 60
-/// ms.
+/// Nothing for 10 ms, then half as good, then the optimum; the bound starts at 2.5 times, is closed at 60 ms.
 TEST(SolverMeasures, IntegralsAreAreasBelowTheGap) {
     const std::vector<Knowledge> steps{
         {10.0, -2.0, -10.0}, {30.0, -4.0, {}}, {60.0, -4.0, -4.0}, {120.0, -4.0, -4.0}};

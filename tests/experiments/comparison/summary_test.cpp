@@ -7,10 +7,6 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
-
 struct Place {
     std::string condition = "paper";
     std::optional<double> rate = 0.0;
@@ -29,13 +25,12 @@ class Summaries : public testing::Test {
         LaneRecord& record = records_.emplace_back();
         record.detector = method;
         record.nearest = nearest;
-        SceneScore score;
-        score.divergence_known = true;
-        score.latency_ms = latency_ms;
-        score.trained_on = is_trained;
-        score.lane_length_m = 25.0;
-        score.ground_truth_length_m = 25.0;
-        score.category = failure ? Category::none : Category::near_ground_truth;
+        SceneScore score{.category = failure ? Category::none : Category::near_ground_truth,
+                         .lane_length_m = 25.0,
+                         .ground_truth_length_m = 25.0,
+                         .divergence_known = true,
+                         .latency_ms = latency_ms,
+                         .trained_on = is_trained};
         auto scored = std::ranges::find_if(methods_, [&](const ScoredMethod& known) {
             return known.method.name == method && known.method.nearest == nearest;
         });
@@ -124,7 +119,7 @@ TEST_F(Summaries, UnknownMeasuresHaveNoShareAndAreLast) {
 }
 
 TEST_F(Summaries, AMethodThatHasLearnedFromACourseIsMarked) {
-    add("clc", {}, {}, 1.0, {}, true);
+    for (const bool is_trained : {true, false}) add("clc", {}, {}, 1.0, {}, is_trained);
     add("front", {}, {});
     EXPECT_THAT(text(), HasSubstr("clc* "));
     EXPECT_THAT(text(), Not(HasSubstr("front*")));

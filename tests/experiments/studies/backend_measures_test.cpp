@@ -10,15 +10,11 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 constexpr double kLimit_ms = 100.0;
 
 SolveRow row_of(const AnnotatedScene& scene, const std::string& solver, SolveStatus status,
                 std::optional<double> objective, double latency_ms, std::size_t permutation = 0) {
-    SolveRow row;
-    row.scene = &scene;
+    SolveRow row{.scene = &scene};
     row.cones = row.size = 6;
     row.backend = Backend{solver};
     row.status = status;
@@ -139,10 +135,7 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
 }
 
 SceneSet some_scenes() {
-    SceneOptions options;
-    options.false_positive_rates = {0.3};
-    options.ranges_m = {25.0};
-    options.every_m = 40.0;
+    SceneOptions options{.false_positive_rates = {0.3}, .ranges_m = {25.0}, .every_m = 40.0};
     return make_scene_set({"generated:kidney", "generated:straight"}, options);
 }
 

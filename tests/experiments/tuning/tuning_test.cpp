@@ -16,13 +16,11 @@ double value_of_d_e(const RldParameters& parameters) {
 }
 
 TEST(ParameterRanges, LeadToThePointAndBackAndMoveValuesOutsideToTheBorder) {
-    RldParameters start;
-    start.s_crit = 8.0;
+    RldParameters start{.s_crit = 8.0};
     for (const RldParameters& from : {start, with_shape_costs(start)}) {
         const RldParameters back = from_unit_cube(to_unit_cube(from), from);
-        for (const TunedParameter& tuned : tuned_parameters(from)) {
+        for (const TunedParameter& tuned : tuned_parameters(from))
             EXPECT_NEAR(back.*tuned.value, from.*tuned.value, 1e-4) << tuned.key;
-        }
         EXPECT_EQ(back.w_b, from.w_b);
     }
     start.s_crit = 1.0;
@@ -47,9 +45,7 @@ TEST(ParameterRanges, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
 }
 
 TEST(ParameterRanges, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
-    RldParameters rest;
-    rest.d_t = 1.25;
-    rest.pairing = Pairing::paper;
+    RldParameters rest{.d_t = 1.25, .pairing = Pairing::paper};
     for (const double corner : {0.0, 1.0}) {
         const std::vector<double> point(tuned_parameters(rest).size(), corner);
         const RldParameters parameters = from_unit_cube(point, rest);
@@ -87,17 +83,12 @@ TEST(Tune, PassesOnWhatAnEvaluationThrows) {
 }
 
 SceneSet straight_track(double rate) {
-    SceneOptions options;
-    options.false_positive_rates = {rate};
-    options.ranges_m = {30.0};
-    options.every_m = 8.0;
+    SceneOptions options{.false_positive_rates = {rate}, .ranges_m = {30.0}, .every_m = 8.0};
     return make_scene_set({"generated:straight"}, options);
 }
 
 TEST(Evaluation, IsTheSameForAnyNumberOfThreads) {
-    EvaluationOptions options;
-    options.nearest = 12;
-    options.time_limit_ms = 1e5;
+    EvaluationOptions options{.nearest = 12, .time_limit_ms = 1e5};
     const Evaluation one(straight_track(0.3), options);
     options.threads = 2;
     const Evaluation two(straight_track(0.3), options);
@@ -113,8 +104,7 @@ TEST(Evaluation, CountsSlowScenesAsWorthless) {
     EXPECT_EQ(Evaluation(straight_track(0.0), options)(RldParameters{}), 0.0);
 }
 
-/// The last cones of the cone set are false, in line with both boundaries and nearer than the true ones
-/// behind.
+/// The last cones of the cone set are false, in line with both boundaries, nearer than true ones behind.
 TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
     AnnotatedScene scene;
     scene.scene.id = "false_cone_at_the_end";
@@ -138,9 +128,8 @@ TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
 }
 
 TEST(ShippedParameters, AreValidAndFoundByName) {
-    for (const std::string_view name : rld_parameter_set_names()) {
+    for (const std::string_view name : rld_parameter_set_names())
         EXPECT_NO_THROW(validate(rld_parameter_set(name).value())) << name;
-    }
     EXPECT_FALSE(rld_parameter_set(std::string_view("n13")));
 }
 

@@ -21,10 +21,10 @@ Edges edges_of(const std::vector<Point>& points) {
 
 /// The dual of the Voronoi diagram, by Boost. Precondition: distinct points with whole coordinates.
 Edges voronoi_edges(const std::vector<Point>& points) {
-    std::vector<boost::polygon::point_data<std::int32_t>> sites;
-    for (const Point& point : points) {
-        sites.emplace_back(static_cast<std::int32_t>(point.x()), static_cast<std::int32_t>(point.y()));
-    }
+    const auto sites = mapped(points, [](const Point& point) {
+        return boost::polygon::point_data(static_cast<std::int32_t>(point.x()),
+                                          static_cast<std::int32_t>(point.y()));
+    });
     boost::polygon::voronoi_diagram<double> diagram;
     boost::polygon::construct_voronoi(sites.begin(), sites.end(), &diagram);
     Edges all;

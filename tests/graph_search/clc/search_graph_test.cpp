@@ -12,8 +12,6 @@
 namespace conelane {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 using tests::cones_at;
 
 std::vector<Vertex> vertices_of(const NextVertexDecider& decider, NextVertexDecider::Range range) {
@@ -254,8 +252,7 @@ TEST(StartPairs, LeavesOutPairsThatNoLaneCanStartWith) {
 
 TEST(StartPairs, KeepToTheWidthsOfTheLanesBounds) {
     const Scene narrow = cones_at({{1, 1.2}, {1, -1.2}});
-    LaneBounds bounds;
-    bounds.w_min_m = 2.0;
+    LaneBounds bounds{.w_min_m = 2.0};
     EXPECT_THAT(start_pairs(narrow, 3, {}, bounds), ElementsAre(StartPair{0, 1}));
     bounds.w_max_m = 2.4;
     EXPECT_THAT(start_pairs(narrow, 3, {}, bounds), IsEmpty());
