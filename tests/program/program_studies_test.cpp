@@ -88,8 +88,9 @@ TEST_F(Program, ShardsOfASolverStudyAreJoinedWithoutSolvingAgain) {
     EXPECT_EQ(solves({"whole.jsonl"}), solves({"0.jsonl", "1.jsonl"}));
     std::set<double> limits_ms;
     for (const nlohmann::json& row : json_lines("whole.jsonl")) {
-        if (row.value("row", "") == "summary")
+        if (row.value("row", "") == "summary") {
             EXPECT_TRUE(row.contains("par10_ms_interval")) << "two courses";
+        }
         if (!row.contains("row")) limits_ms.insert(row["limit_ms"].get<double>());
     }
     EXPECT_EQ(limits_ms, (std::set<double>{1000.0, 30000.0}));

@@ -165,7 +165,9 @@ TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
 
 /// For one boundary alone: each cone has half of its edges, and its turn.
 TEST(PathPairArcGraph, SharesOfConesAddUpToTheLane) {
-    LaneGraphProblem problem{.cone_count = 3, .near = {true, true, false}};
+    LaneGraphProblem problem;  // GCC warns falsely of a member where all are named in braces
+    problem.cone_count = 3;
+    problem.near = {true, true, false};
     for (const std::size_t i : {0U, 1U})
         problem.edges.push_back({i, i + 1, 0.0, 0.0, 0.0, 0.0, -1.0, true, false});
     problem.turns.push_back({0, 1, 1, 0.0, 0.0, 0.25, false});
