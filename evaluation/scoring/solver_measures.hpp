@@ -24,7 +24,8 @@ struct SolverRun {
 
 /// Dolan and Moré's performance profile of each solver: at each of the ratios, ascending and >= 1, the share
 /// of the runs that it solves within this multiple of the fastest time. `by_solver` are runs of the same
-/// instances in one order. A run that no solver solves counts for none. Throws InvalidInput if the numbers of runs differ or there are none.
+/// instances in one order. A run that no solver solves counts for none. Throws InvalidInput if the numbers of
+/// runs differ or there are none.
 [[nodiscard]] std::vector<std::vector<double>> performance_profiles(
     std::span<const std::vector<SolverRun>> by_solver, std::span<const double> ratios);
 

@@ -130,8 +130,7 @@ void set_covariances(std::vector<Cone>& cones, const Numbers& given) {
         const std::string key = "covariances[" + std::to_string(i) + "]";
         if (!std::all_of(matrix, matrix + kSize * kSize, [](double value) { return std::isfinite(value); }))
             throw InvalidInput(key, "must be a finite number");
-        cones[i].position_covariance =
-            covariance_of({matrix[0], matrix[1], matrix[2], matrix[3]});
+        cones[i].position_covariance = covariance_of({matrix[0], matrix[1], matrix[2], matrix[3]});
         if (!cones[i].position_covariance) throw InvalidInput(key, "must be symmetric");
         if (!cones[i].position_covariance->is_valid())
             throw InvalidInput(key, "must be positive semidefinite");

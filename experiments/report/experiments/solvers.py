@@ -64,9 +64,8 @@ def times_figure(results):
     for index, (engine, times) in enumerate(of_engine.items()):
         for share, label, style in ((0.5, engine, {}), (0.95, "", THIN)):
             points = [(place, quantile(times[nearest], share)) for place, nearest in enumerate(sizes) if nearest in times]
-            points = [point for point in points if np.isfinite(point[1])]
-            if points:
-                curves.append(Curve(label, points, series_style(index) | {"marker": MARKERS[index % len(MARKERS)]} | style))
+            if any(np.isfinite(time) for _, time in points):  # a gap where it is not known
+                curves.append(Curve(label, np.where(np.isfinite(points), points, np.nan), series_style(index) | {"marker": MARKERS[index % len(MARKERS)]} | style))
     figure, axes = chart(curves, "nearest cones in the set", "time [ms], thin: p95", height=3.4, log="y")
     axes.set_xticks(range(len(sizes)), [_size_name(nearest) for nearest in sizes])
     return figure, axes
