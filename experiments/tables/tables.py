@@ -13,7 +13,6 @@ import os
 import re
 import sys
 
-import beam_picture
 import engines
 import held_out
 import reproduce
@@ -26,7 +25,6 @@ STORED = os.path.join(ROOT, "docs", "benchmarks")
 PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/rld.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
 JUDGE = os.path.join(STORED, "course_judge.json")  # the record of a judge that is not in the project any more
 KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "engines": engines, "reproduce": reproduce}
-BEAM_PICTURE = os.path.join(ROOT, "docs", "learned-costs.svg")
 
 BLOCK = re.compile(r"(<!-- table (?P<name>[^>]*?) -->\n).*?(<!-- end of table -->)", flags=re.S)
 
@@ -96,18 +94,11 @@ def text_of(stored):
                                for key, value in stored.items()) + "\n}\n")
 
 
-def shows_the_beam(stored):
-    """Whether the picture of the beam has the stored figures, if there are any."""
-    return beam_picture.points(stored["solvers"]) in ({}, beam_picture.points_in(read(BEAM_PICTURE)))
-
-
 def write_pages(files):
     """The figures of the files by their kind, then the pages; nothing is written if they do not make all tables."""
     stored = stored_figures() | {kind: json.loads(text) for kind, text in files.items()}
     tables = all_tables(stored)
     pages = {os.path.join(ROOT, page): filled(read(os.path.join(ROOT, page)), tables, page) for page in PAGES}
-    if not shows_the_beam(stored):
-        pages[BEAM_PICTURE] = beam_picture.picture(stored["solvers"])
     for path, text in [(stored_file(kind), text) for kind, text in files.items()] + list(pages.items()):
         write(path, text)
 
@@ -120,8 +111,6 @@ def check():
     wrong = [f"{page}: a table is not what docs/benchmarks/ says; `experiments/tables/tables.py write` makes it again"
              for page, text in pages.items() if filled(text, tables, page) != text]
     wrong += [f"no page has the table '{name}'" for name in tables if name not in named]
-    if not shows_the_beam(stored):
-        wrong.append("docs/learned-costs.svg is not what docs/benchmarks/ says; `experiments/tables/tables.py write` makes it again")
     wrong += strangers(stored)
     print("\n".join(wrong) or f"{len(named)} tables are what docs/benchmarks/ says")
     return 1 if wrong else 0

@@ -1,6 +1,5 @@
 """tables_test.py ROOT: how the figures of runs become tables, on figures made by hand, and that a page which says something else is found."""
 
-import importlib.util
 import json
 import os
 import re
@@ -14,7 +13,6 @@ ROOT = sys.argv.pop(1)
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(ROOT, "experiments", "tables"))
 
-import beam_picture  # noqa: E402
 import engines  # noqa: E402
 import held_out  # noqa: E402
 import races  # noqa: E402
@@ -249,20 +247,6 @@ class Engines(unittest.TestCase):
         text = engines.tables({"rows": [{"table": "cone sets", "method": "clc", "nearest": nearest, "usable": 0.5} for nearest in (6, 12, 0)]})["usable by cone set"]
         self.assertEqual(text.splitlines()[0], "| usable, % | n = 12 | all visible |")
         self.assertIn("| `clc` | 50.0 | 50.0 |", text)
-
-
-class BeamPicture(unittest.TestCase):
-    def test_a_picture_holds_its_figures(self):
-        self.assertEqual(beam_picture.points({"rows": []}), {})
-        row = {"table": "beam", "beam": 5, "best_score": 0.8, "first_usable": 0.9, "iou": 1.0}
-        stored = {"rows": [row, row | {"beam": 10, "iou": 0.5}]}
-        self.assertEqual(beam_picture.points(stored)["iou"], [[5, 100.0], [10, 50.0]])
-        shown = tables.read(tables.BEAM_PICTURE)
-        self.assertNotEqual(beam_picture.points_in(shown), beam_picture.points(stored))
-        if importlib.util.find_spec("matplotlib"):
-            text = beam_picture.picture(stored)
-            self.assertEqual(beam_picture.points_in(text), beam_picture.points(stored))
-            self.assertEqual(len(re.findall(">(?:5|10)</text>", text)), 2)  # the marks of the axis
 
 
 @unittest.skipUnless(shutil.which("git"), "there is no git")
