@@ -11,7 +11,6 @@
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/solver_input.hpp"
 #include "evaluation/world/generated_tracks.hpp"
-#include "experiments/instances/files_together.hpp"
 #include "experiments/instances/instance_features.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "model/lane_graph_model.hpp"
@@ -33,6 +32,24 @@
 
 namespace conelane::experiments {
 namespace {
+
+/// Files that get their names together, once all of them are complete. Until then at most one is open.
+class FilesTogether {
+  public:
+    void add(const std::filesystem::path& file, const std::string& content) {
+        AtomicFile& output = *files_.emplace_back(std::make_unique<AtomicFile>(file));
+        output.stream() << content;
+        output.finish();
+    }
+    void commit() const {
+        std::vector<AtomicFile*> all;
+        for (const auto& file : files_) all.push_back(file.get());
+        commit_together(all);
+    }
+
+  private:
+    std::vector<std::unique_ptr<AtomicFile>> files_;
+};
 
 constexpr std::array kFormulations{Formulation::paper, Formulation::tight};
 /// Objectives of two engines may differ by this much: CBC knows them to the tolerance of its LP.
