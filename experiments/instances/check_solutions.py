@@ -106,10 +106,11 @@ def compare(answers):
     usable = [answer for answer in answers if answer[0] in ("proven", "unverified", "feasible")]
     best = min((answer[4] for answer in usable), default=math.inf)
     claims = [answer for answer in usable if answer[0] == "unverified"]
+    agreed = [answer for answer in claims if answer[4] == best or (answer[4] < math.inf and mps.is_same(answer[4], best))]
     for answer in claims:
-        if answer[4] > best and not mps.is_same(answer[4], best):
+        if answer not in agreed:
             answer[:2] = "wrong", f"claims {answer[4]:.9g} to be the optimum, another solver has a point of {best:.9g}"
-        elif len(claims) > 1:
+        elif len(agreed) > 1:
             answer[0] = "proven"
 
 

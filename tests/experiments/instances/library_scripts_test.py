@@ -98,6 +98,7 @@ class Scripts(unittest.TestCase):
         self.assertEqual(verdicts((-2.0, False), (-2.0, False)), ["proven", "proven"])
         self.assertEqual(verdicts((-2.0, False)), ["unverified"])
         self.assertEqual(verdicts((-2.0, False), (-3.0, True)), ["wrong", "feasible"])
+        self.assertEqual(verdicts((-2.0, False), (-2.5, False)), ["wrong", "unverified"])
         self.assertEqual(verdicts((math.inf, False), (-3.0, True)), ["wrong", "feasible"])
         self.assertEqual(verdicts((-2.0, False), (-2.5, False), (-2.5, False)), ["wrong", "proven", "proven"])
 
