@@ -39,7 +39,7 @@ void read_all(std::string_view bytes) {
     }
     answers([&] { (void)read_detector_card(file).summary(); });
     const std::string text(bytes);
-    folder.write("run.json", bytes);
+    (void)folder.write("run.json", bytes);
     answers([&] { (void)experiments::read_run_record(folder.path()); });
     answers([&] { (void)experiments::parse_method(text); });
     (void)split_detectors({text});
