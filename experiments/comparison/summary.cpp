@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::size_t kMaxBlocks = 2;       ///< one below the other
 constexpr std::size_t kMinRows = 3;         ///< rows that are shown even if other lines have no room
+constexpr std::size_t kMinRowsOfSizes = 2;  ///< the same, of cone sets, which have more tables
 constexpr std::size_t kMaxLabelWidth = 24;  ///< a longer name is cut
 constexpr std::size_t kCellWidth = 6;       ///< " 100.0"
 constexpr std::size_t kLatencyWidth = 9;
@@ -145,7 +146,8 @@ class Summary {
         const std::size_t fixed = 1 + (has_groups() ? 3 : 2) * blocks_count + 2 + notes.size() +
                                   (any_trained ? 1 : 0) + 1 + kLinesBelowSummary;
         const std::size_t room = fixed < kSummaryLines ? (kSummaryLines - fixed) / tables : 0;
-        const auto shown = std::span(rows_).first(std::min(rows_.size(), std::max(room, kMinRows)));
+        const auto shown = std::span(rows_).first(
+            std::min(rows_.size(), std::max(room, by_size_ ? kMinRowsOfSizes : kMinRows)));
 
         std::string text = cut(headline(), kSummaryColumns) + '\n';
         for (Measure measure : measures) {

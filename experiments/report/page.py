@@ -174,6 +174,7 @@ def render(results, published, tracks=()):
                        published["usual_width_m"]) if results.samples else None
     sections = _sections(results, published, data)
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
-    body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
-                   for name, _, title, content in sections)
-    return shell("lanes between cones, compared", links, f'<div class="intro">{_intro(results, data)}</div>\n{first_figure(results)}{body}')
+    body = [f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>' for name, _, title, content in sections]
+    # Below the headline, whose whole table is to be on the first screen. A page of studies alone begins with the figure.
+    body.insert(1 if data else 0, first_figure(results))
+    return shell("lanes between cones, compared", links, f'<div class="intro">{_intro(results, data)}</div>\n{"".join(body)}')

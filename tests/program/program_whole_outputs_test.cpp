@@ -81,7 +81,7 @@ TEST_F(WholeOutputs, OfInterruptedInstancesAreNotWritten) {
     }
     run_well(kInstances);
     const auto before = contents("made");
-    EXPECT_EQ(before.size(), 5U);
+    EXPECT_EQ(before.size(), 6U);
     interrupt(kMoreInstances, SIGINT, "made", "curvy");
     EXPECT_EQ(contents("made"), before) << "the old library";
 }

@@ -83,7 +83,8 @@ TEST(Statistics, CoursesAreTheUnitsOfAnInterval) {
     // 30 courses of 0 and 1: the standard error of their mean is 0.5 / sqrt(30).
     EXPECT_NEAR(half.interval->second - half.interval->first, 2.0 * 1.96 * 0.5 / std::sqrt(30.0), 0.04);
     EXPECT_EQ(half.interval, course_mean(many, courses).interval);
-    EXPECT_NE(half.interval, course_mean(many, courses, 2).interval);
+    for (double& value : many) value += std::sqrt(static_cast<double>(&value - many.data()));
+    EXPECT_NE(course_mean(many, courses).interval, course_mean(many, courses, 2).interval);
 }
 
 }  // namespace

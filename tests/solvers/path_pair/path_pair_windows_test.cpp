@@ -205,7 +205,8 @@ Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     Graph s(problem);
     tests::FakeSearchClock clock(looks + 1);
     BranchAndBound search(s.arcs, s.system, s.incumbent, options, clock);
-    Stopped result{.cost = s.incumbent.cutoff(), .outcome = search.run()};
+    const auto outcome = search.run();
+    Stopped result{.cost = s.incumbent.cutoff(), .outcome = outcome};
     if (s.incumbent.found()) {
         LaneGraph lane;
         for (const int edge : s.incumbent.edges()) {
