@@ -126,7 +126,7 @@ def cp_sat(ask):
     status = ask.clock(solver.solve, model)
     has_point = status in (cp_model.OPTIMAL, cp_model.FEASIBLE)
     values = {name: solver.value(variable) / unit[name] for name, variable in column.items()} if has_point else None
-    bound = None if status == cp_model.INFEASIBLE else solver.best_objective_bound / scale - error
+    bound = solver.best_objective_bound / scale - error if has_point else None  # it says 0 before it knows one
     return Answer(solver.status_name(status).lower(), values, bound, solver.num_branches, f"CP-SAT {ortools.__version__}")
 
 

@@ -99,14 +99,24 @@ std::vector<Backend> exact_backends() {
     return backends;
 }
 
-Backend backend_of(std::string_view name) {
+Backend backend_of(std::string_view text) {
+    std::string name(text);
+    constexpr std::string_view kAllRows = "/all-rows";
+    const std::size_t named = std::min(name.find('='), name.size());  // a command may hold anything
+    if (std::string_view(name).substr(0, named).ends_with(kAllRows)) {
+        Backend backend = backend_of(name.erase(named - kAllRows.size(), kAllRows.size()));
+        if (!backend.uses_formulation())
+            throw InvalidInput("--solvers", fmt::format("'{}' has no rows", backend.solver));
+        backend.all_rows = true;
+        return backend;
+    }
     if (const auto outside = parse_outside_solver(name)) {
         return {.solver = outside->name,
                 .formulation = outside->formulation.value_or(Formulation::tight),
                 .outside = *outside};
     }
     const std::size_t slash = std::min(name.find('/'), name.size());
-    Backend backend{std::string(name.substr(0, slash))};
+    Backend backend{name.substr(0, slash)};
     const RldSolverEntry& entry = entry_of(backend);
     if (!entry.has(SolverTrait::exact))
         throw InvalidInput("--solvers", "'" + backend.solver + "' proves no optimum");

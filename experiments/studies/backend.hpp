@@ -35,10 +35,10 @@ struct Backend {
 /// Every exact solver of the registry, from nothing, those that use a formulation on the tight one.
 [[nodiscard]] std::vector<Backend> exact_backends();
 
-/// "SOLVER" or "SOLVER/FORMULATION", tight where none is named; or exec:NAME=COMMAND, exec:NAME/FORMULATION=
-/// COMMAND. Throws InvalidInput if the registry has no such exact solver, there is no such formulation, or
-/// the solver uses none.
-[[nodiscard]] Backend backend_of(std::string_view name);
+/// "SOLVER[/FORMULATION][/all-rows]", tight and rows on demand where it does not say; or the same after exec:
+/// and before =COMMAND. Throws InvalidInput if the registry has no such exact solver, there is no such
+/// formulation, or the solver uses none.
+[[nodiscard]] Backend backend_of(std::string_view text);
 
 /// A solver of a backend, ready to solve. Throws InvalidInput if the backend's solver is not in this
 /// build, and as SolverProgram does.

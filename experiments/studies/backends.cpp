@@ -85,8 +85,9 @@ class BackendsStudy : public SolveStudy {
         SolveStudy::add_options(command);
         command
             .add_option("--solvers", solvers_,
-                        "exact solvers: SOLVER or SOLVER/FORMULATION, separated by commas; all for every "
-                        "solver; or exec:NAME=COMMAND, a program from outside, in an argument of its own")
+                        "exact solvers: SOLVER[/FORMULATION][/all-rows], separated by commas; all for every "
+                        "solver; or exec:NAME[...]=COMMAND, a program from outside, in an argument of its "
+                        "own")
             ->capture_default_str();
         command
             .add_option("--formulations", formulations_,
@@ -182,7 +183,8 @@ class BackendsStudy : public SolveStudy {
             for (const Backend& one : of_one) {
                 all.push_back(one);
                 if (warm_start_) all.push_back(one), all.back().warm_start = true;
-                if (all_rows_ && one.uses_formulation()) all.push_back(one), all.back().all_rows = true;
+                if (all_rows_ && one.uses_formulation() && !one.all_rows)
+                    all.push_back(one), all.back().all_rows = true;
             }
         };
         for (const std::string& solver : split_detectors(solvers_)) {
@@ -191,7 +193,8 @@ class BackendsStudy : public SolveStudy {
                 continue;
             }
             const std::string name = solver.substr(0, solver.find('='));
-            add(backend_of(solver), name.find('/') != std::string::npos);
+            add(backend_of(solver),
+                name.find("/tight") != std::string::npos || name.find("/paper") != std::string::npos);
         }
         std::vector<std::string> labels;
         for (const Backend& backend : all) {

@@ -93,7 +93,10 @@ TEST(Backends, HaveNamesWithAndWithoutAFormulation) {
     EXPECT_EQ(backend_of("path-pair").label(), "path-pair");
     EXPECT_EQ(backend_of("cbc").label(), "cbc/tight");
     EXPECT_EQ(backend_of("cbc/paper").label(), "cbc/paper");
-    for (const char* bad : {"magic", "lp-rounding", "path-pair/tight", "cbc/", "cbc/loose", "/tight", ""})
+    EXPECT_EQ(backend_of("cbc/all-rows").label(), "cbc/tight whole");
+    EXPECT_EQ(backend_of("exec:a/paper/all-rows=run b/all-rows").label(), "a/paper whole");
+    for (const char* bad : {"magic", "lp-rounding", "path-pair/tight", "cbc/", "cbc/loose", "/tight", "",
+                            "path-pair/all-rows", "cbc/all-rows/tight", "/all-rows"})
         EXPECT_THROW((void)backend_of(bad), InvalidInput) << bad;
 }
 
