@@ -87,7 +87,7 @@ std::string version() {
 
 /// Adds the commands by what they are for, in the order of the help.
 void add_commands(CLI::App& program) {
-    using namespace conelane::experiments;
+    using namespace conelane::program;
     struct Group {
         const char* name;
         std::vector<void (*)(CLI::App&)> commands;

@@ -6,10 +6,10 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/comparison/summary.hpp"
-#include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <array>

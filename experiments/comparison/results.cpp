@@ -4,8 +4,8 @@
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/detector_card_fields.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <exception>

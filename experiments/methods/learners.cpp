@@ -8,15 +8,15 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/training/front_training.hpp"
-#include "experiments/training/rld_training.hpp"
-#include "experiments/training/training_run.hpp"
-#include "experiments/tuning/detector_tuning.hpp"
-#include "experiments/tuning/evaluation.hpp"
-#include "experiments/tuning/parameter_ranges.hpp"
-#include "experiments/tuning/tuner.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
+#include "learning/training/front_training.hpp"
+#include "learning/training/rld_training.hpp"
+#include "learning/training/training_run.hpp"
+#include "learning/tuning/detector_tuning.hpp"
+#include "learning/tuning/evaluation.hpp"
+#include "learning/tuning/parameter_ranges.hpp"
+#include "learning/tuning/tuner.hpp"
 
 #include <algorithm>
 #include <array>
@@ -28,6 +28,7 @@ namespace conelane::experiments {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace learning;
 
 constexpr const char* kStepScores = "step_scores.json";
 constexpr const char* kExtendedNet = "rank_net_extended.json";

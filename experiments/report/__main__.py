@@ -5,7 +5,6 @@ stderr and exit code 2. The caller gives places of its own and puts the files wh
 
 import json
 import os
-import sys
 import warnings
 
 from .experiments.comparison import by_rate_figure, latency_figure
@@ -13,7 +12,7 @@ from .experiments.solvers import times_figure
 from .experiments.speed import growth_figure
 from .load import Missing, load_results
 from .page import render
-from .records import InputError
+from .records import run
 from .theme import picture_colors, png_of
 
 # The main figures, which are PNG too, for where no page can be shown.
@@ -48,22 +47,14 @@ def write(path, content):
 def main(arguments):
     folder, page, published, picture_folder, tracks = arguments
     warnings.simplefilter("ignore")  # of figures too small for their labels; nobody can do anything about them
-    try:
-        results = load_results(folder)
-        if picture_folder:
-            os.makedirs(picture_folder, exist_ok=True)
-        write(page, render(results, json.loads(published), tuple(filter(None, tracks.split(",")))).encode("utf-8"))
-        if picture_folder:
-            for name, content in pictures(results):
-                write(os.path.join(picture_folder, name), content)
-    except InputError as error:
-        print(f"conelane: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"conelane: {error.filename or page}: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    results = load_results(folder)
+    if picture_folder:
+        os.makedirs(picture_folder, exist_ok=True)
+    write(page, render(results, json.loads(published), tuple(filter(None, tracks.split(",")))).encode("utf-8"))
+    if picture_folder:
+        for name, content in pictures(results):
+            write(os.path.join(picture_folder, name), content)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run(main)

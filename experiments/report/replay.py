@@ -4,11 +4,10 @@ numpy and no matplotlib: the Python package of the library has this file too."""
 import json
 import math
 import pkgutil
-import sys
 from collections import Counter
 from html import escape
 
-from .records import InputError, read_json, read_lines
+from .records import read_json, read_lines, run
 
 _EVERY = 2  # points of a path that are drawn, 0.5 m apart
 _AHEAD_M = 20.0
@@ -164,22 +163,17 @@ def main(arguments):
     frames_file, plans_file, page, interval_s = arguments
     replay = Replay()
     columns = ("s_m", "x_m", "y_m", "heading_rad", "curvature_1pm", "width_left_m", "width_right_m")
-    try:
-        plans = read_lines(plans_file)
-        for _, frame in frame_lines(frames_file, float(interval_s)):
-            if "reset" in frame:
-                continue
-            _, plan = next(plans)
-            pose = frame["pose"]
-            plan["points"] = [[point[key] for key in columns] for point in plan["points"]]
-            replay.add(plan["time_s"], (pose["x"], pose["y"], pose["yaw"]), [(cone["x"], cone["y"]) for cone in frame["cones"]], plan)
-        with open(page, "w", encoding="utf-8") as stream:
-            stream.write(replay.page(frames_file.rpartition("/")[2]))
-    except InputError as error:
-        print(f"conelane: {error}", file=sys.stderr)
-        return 2
-    return 0
+    plans = read_lines(plans_file)
+    for _, frame in frame_lines(frames_file, float(interval_s)):
+        if "reset" in frame:
+            continue
+        _, plan = next(plans)
+        pose = frame["pose"]
+        plan["points"] = [[point[key] for key in columns] for point in plan["points"]]
+        replay.add(plan["time_s"], (pose["x"], pose["y"], pose["yaw"]), [(cone["x"], cone["y"]) for cone in frame["cones"]], plan)
+    with open(page, "w", encoding="utf-8") as stream:
+        stream.write(replay.page(frames_file.rpartition("/")[2]))
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run(main)

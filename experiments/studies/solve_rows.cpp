@@ -5,10 +5,10 @@
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/scene_set.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "experiments/studies/machine.hpp"
 #include "model/deadline.hpp"
 

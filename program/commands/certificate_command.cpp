@@ -4,10 +4,10 @@
 #include "evaluation/formats/certificate_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
 #include "evaluation/world/ground_truth.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -24,7 +24,7 @@
 
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CertificateOptions {
@@ -266,4 +266,4 @@ void add_certify_command(CLI::App& program) {
     command.callback([options] { run(*options, options->parameters.load()); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -1,11 +1,11 @@
 #include "conelane/check.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
 #include "evaluation/proofs/claim_verdict.hpp"
 #include "evaluation/proofs/exact_program.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
@@ -27,7 +27,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CheckOptions {
@@ -330,4 +330,4 @@ void add_check_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -22,7 +22,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ void add_field_options(CLI::App& command, const OptionFields& fields) {
     }
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -4,7 +4,8 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/comparison.hpp"
-#include "experiments/training/option_field.hpp"
+#include "learning/training/option_field.hpp"
+#include "program/commands/commands.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -13,12 +14,8 @@
 #include <unordered_map>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 /// What several commands do.
-namespace conelane::experiments {
+namespace conelane::program {
 
 /// Stands for standard input and standard output.
 inline constexpr const char* kStandardStream = "-";
@@ -76,4 +73,4 @@ void finish_comparison(const ComparisonOutcome& outcome, const std::filesystem::
 /// writes is in place by then.
 void report_errors(const AnswerErrors& errors);
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

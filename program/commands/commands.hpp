@@ -2,9 +2,15 @@
 
 #include <CLI/CLI.hpp>
 
+namespace conelane::learning {}
+namespace conelane::experiments {}
+
 /// The sub-commands of the program `conelane`, a file each. `add_X` declares the options of X; the callback
 /// runs it. An exception of a command becomes one line on stderr and exit code 2.
-namespace conelane::experiments {
+namespace conelane::program {
+
+using namespace experiments;  // whose parts the commands call
+using namespace learning;
 
 void add_scenes_command(CLI::App& program);
 void add_methods_command(CLI::App& program);
@@ -26,4 +32,4 @@ void add_plot_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

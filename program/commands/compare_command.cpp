@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CompareOptions {
@@ -138,4 +138,4 @@ void add_compare_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CrossCheckCommandOptions {
@@ -72,4 +72,4 @@ void add_cross_check_command(CLI::App& study) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CrossValidateOptions {
@@ -122,4 +122,4 @@ void add_cross_validate_command(CLI::App& program) {
     command.callback([options] { run(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

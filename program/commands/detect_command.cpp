@@ -16,7 +16,7 @@
 
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct DetectOptions {
@@ -148,4 +148,4 @@ void add_detect_command(CLI::App& program) {
     command.callback([options] { detect(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -20,7 +20,7 @@
 
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 /// Whatever `drive` writes.
@@ -324,4 +324,4 @@ void add_drive_command(CLI::App& program) {
     command.callback([options] { options->frames.empty() ? drive_all(*options) : follow_frames(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -28,7 +28,7 @@
 // Export and import are about the program of one scene. Rows that a solve adds on demand, (5) and the
 // pairing, are too many to write in full; a flow replaces them. With --rows-on-demand the file has neither:
 // its optimum is only a bound for the scene, unless its point is a lane graph.
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 /// The scene of the program.
@@ -232,4 +232,4 @@ void add_export_command(CLI::App& program) {
         [options] { options->solution.empty() ? export_program(*options) : import_solution(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -1,8 +1,8 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/track_spec.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct InstancesOptions {
@@ -96,4 +96,4 @@ void add_instances_command(CLI::App& program) {
     command.callback([options] { run(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

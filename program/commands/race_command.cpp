@@ -5,11 +5,11 @@
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/methods/learners.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/command_parts.hpp"
@@ -33,7 +33,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 constexpr int kTrackdriveLaps = 10;
@@ -389,4 +389,4 @@ void add_race_command(CLI::App& program) {
     command.callback([options] { run_races(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -22,7 +22,7 @@
 #include <fmt/ranges.h>
 
 // What the Python package of the program draws: pages and pictures.
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 template <typename Call>
@@ -156,4 +156,4 @@ void add_plot_command(CLI::App& program) {
     command.callback([options] { plot(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

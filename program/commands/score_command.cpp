@@ -24,7 +24,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct ScoreOptions {
@@ -140,4 +140,4 @@ void add_score_command(CLI::App& program) {
     command.callback([options] { score_all(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

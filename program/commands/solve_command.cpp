@@ -5,9 +5,9 @@
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/outside_solver.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/milp/milp_solver.hpp"
@@ -24,7 +24,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct Options {
@@ -189,4 +189,4 @@ void add_solve_command(CLI::App& program) {
     command.callback([options] { solve_all(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct StudyOptions {
@@ -67,4 +67,4 @@ void add_study_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

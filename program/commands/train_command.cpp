@@ -5,11 +5,11 @@
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/training/front_training.hpp"
-#include "experiments/training/rld_training.hpp"
-#include "experiments/training/training_run.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/weights/weight_files.hpp"
+#include "learning/training/front_training.hpp"
+#include "learning/training/rld_training.hpp"
+#include "learning/training/training_run.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
@@ -20,7 +20,7 @@
 
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 constexpr const char* kHoldOut = "tracks to measure on only, not to learn from";
@@ -213,4 +213,4 @@ void add_train_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

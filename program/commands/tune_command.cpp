@@ -5,12 +5,12 @@
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
-#include "experiments/tuning/detector_tuning.hpp"
-#include "experiments/tuning/evaluation.hpp"
-#include "experiments/tuning/tuner.hpp"
+#include "learning/tuning/detector_tuning.hpp"
+#include "learning/tuning/evaluation.hpp"
+#include "learning/tuning/tuner.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
@@ -25,7 +25,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 using nlohmann::ordered_json;
@@ -199,4 +199,4 @@ void add_tune_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

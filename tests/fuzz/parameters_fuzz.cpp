@@ -5,7 +5,7 @@
 #include "evaluation/outside/outside_detector.hpp"
 #include "experiments/comparison/run_record.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/tuning/detector_tuning.hpp"
+#include "learning/tuning/detector_tuning.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
@@ -35,7 +35,7 @@ void read_all(std::string_view bytes) {
     });
     for (const std::string_view name : experiments::tunable_names()) {
         const DetectorRecipe& recipe = experiments::find_tunable(name);
-        answers([&] { (void)recipe.tuned()->make(experiments::parse_values(recipe, bytes, "input.json")); });
+        answers([&] { (void)recipe.tuned()->make(learning::parse_values(recipe, bytes, "input.json")); });
     }
     answers([&] { (void)read_detector_card(file).summary(); });
     const std::string text(bytes);

@@ -7,7 +7,7 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/tuning/parameter_ranges.hpp"
+#include "learning/tuning/parameter_ranges.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/testing.hpp"
 
@@ -15,6 +15,8 @@
 
 namespace conelane::experiments {
 namespace {
+
+using namespace learning;
 
 /// Two families of one course each, and a course that is always learned from, with little work.
 const std::string kFolds =
