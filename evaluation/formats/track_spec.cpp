@@ -143,8 +143,8 @@ std::string listed(std::string_view last, const std::function<std::string(const 
 }  // namespace
 
 std::span<const TrackFormat* const> track_formats() {
-    static constexpr std::array kAll{&kGeneratedTracks, &kFsdTracks, &kPacsimTracks, &kEufsTracks,
-                                     &kRunTracks};
+    static constexpr std::array kAll{&kGeneratedTracks, &kFsdTracks, &kPacsimTracks,
+                                     &kEufsTracks,      &kRunTracks, &kDrivenRuns};
     return kAll;
 }
 

@@ -169,7 +169,8 @@ Track changed(const Track& track, const Warp& warp, bool backwards, bool respace
     for (std::size_t i = 0; i < sides[0].size(); ++i) result.left.push_back(add(sides[0][i], colors[0][i]));
     for (std::size_t i = 0; i < sides[1].size(); ++i) result.right.push_back(add(sides[1][i], colors[1][i]));
     for (std::size_t i = 0; i < track.cones.size(); ++i) {
-        if (!is_boundary[i]) add(warp(track.cones[i].position), track.cones[i].color);
+        // False cones are drawn for each scene; those that a run saw would be added to them.
+        if (!is_boundary[i] && track.frames.empty()) add(warp(track.cones[i].position), track.cones[i].color);
     }
     return result;
 }

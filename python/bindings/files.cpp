@@ -149,7 +149,7 @@ constexpr const char* kLoadTracks =
 Tracks from files of several formats, or generated ones.
 
 spec: "generated:NAME" (straight, circle, ...), "fsd:DIR" or "fsd:DIR:1,2", "pacsim:FILE", "eufs:FILE", "ftlog:FILE",
-    a run of ft-fsd. A folder instead of the file stands for all its files.
+    a run of ft-fsd, "run:FILE", a run of frames, labelled by the path that was driven. A folder instead of the file stands for all its files.
 Raises ValueError, naming the file, or the spec.
 Warns (UserWarning) for each of the `warnings` of a track.
 

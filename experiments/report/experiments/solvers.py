@@ -13,7 +13,7 @@ from ..theme import MARKERS, series_style
 from .speed import ratio
 
 FILE = "backends.jsonl"
-_WARM = " warm"
+_WARM, _ALL_ROWS = " warm", " whole"
 _SOLVE = {"scene": TEXT, "track": TEXT, "nearest": WHOLE, "backend": TEXT, "status": TEXT, "nodes": WHOLE, "latency_ms": NUMBER}
 
 
@@ -48,13 +48,15 @@ def _size(row, *more):
 
 
 def times_figure(results):
-    """Median and p95 of the time to a proven optimum by number of cones, for each engine, and the time of CLC on the same cone sets. A curve ends
-    where fewer scenes are proven."""
+    """Median and p95 of the time to a proven optimum by number of cones, for each engine, with rows on demand or all, whichever proves more and is
+    faster at that size; and the time of CLC on the same cone sets. A curve ends where fewer scenes are proven."""
     solves = [one for one in _read(results)[0] if not one.method.endswith(_WARM)]
     sizes = sorted({one.nearest for one in solves}, key=lambda nearest: nearest or np.inf)
     of_engine = {}
     for one in solves:
-        of_engine.setdefault(one.method, {})[one.nearest] = np.where(one.is_decided, one.latency, np.inf)
+        of_size = of_engine.setdefault(one.method.removesuffix(_ALL_ROWS), {})
+        times = np.where(one.is_decided, one.latency, np.inf)
+        of_size[one.nearest] = min(of_size.get(one.nearest, times), times, key=lambda times: (np.mean(np.isinf(times)), quantile(times, 0.5)))
     scenes = {nearest: np.concatenate([one.scene for one in solves if one.nearest == nearest]) for nearest in sizes}
     for sample in results.beside["sweep"]:
         common = np.isin(sample.scene, scenes.get(sample.nearest or 0, []))

@@ -2,10 +2,13 @@
 
 #include "evaluation/formats/run_log.hpp"
 
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -246,6 +249,68 @@ TEST(RecordedRuns, GiveBoundariesWhereTheyHaveColorsAndOneLane) {
     const Track skidpad = read_run_log(folder / "skidpad.json");
     EXPECT_THAT(skidpad.warnings, ElementsAre(HasSubstr("bound no lane")));
     EXPECT_EQ(skidpad.driven.size(), skidpad.frames.size());
+}
+
+/// Of the cones of `truth`, the share that `found` has too, each within half a metre.
+double share_found(const std::vector<Point>& truth, const std::vector<Point>& found) {
+    const auto is_found = [&](const Point& cone) {
+        return std::ranges::any_of(found, [&](const Point& other) { return (other - cone).norm() < 0.5; });
+    };
+    return static_cast<double>(std::ranges::count_if(truth, is_found)) / static_cast<double>(truth.size());
+}
+
+/// A car drives round courses among false cones that stay, with noise, missed cones and without colors: what
+/// it drove through is the course.
+TEST_F(RunLog, ADrivenPathLabelsWhatTheCarSaw) {
+    for (const char* name : {"curvy", "hairpins", "kidney", "serpentine"}) {
+        const Track course = load_tracks(fmt::format("generated:{}@5", name)).front();
+        const SceneOptions seen{.false_positive_rates = {0.3},
+                                .ranges_m = {20.0},
+                                .every_m = 1.0,
+                                .noise_sigma_m = 0.1,
+                                .miss_rate = 0.05,
+                                .persistent = true,
+                                .seed = 3};
+        std::string lines;
+        for (const AnnotatedScene& scene : generate_scenes(course, seen)) {
+            const auto cones = mapped(scene.scene.cones, [](const Cone& cone) {
+                return fmt::format(R"({{"x": {}, "y": {}}})", cone.position.x(), cone.position.y());
+            });
+            const Pose& pose = scene.scene.pose;
+            lines += fmt::format(R"({{"pose": {{"x": {}, "y": {}, "yaw": {}}}, "cones": [{}]}})"
+                                 "\n",
+                                 pose.position.x(), pose.position.y(), pose.yaw_rad, fmt::join(cones, ", "));
+        }
+        const Track run = read_driven_run(file_with(lines, "lap.frames.jsonl"));
+        EXPECT_EQ(run.name, "run_lap");
+        EXPECT_EQ(run.closed, course.closed) << name;
+        const TrackBoundaries truth = boundaries(course);
+        const TrackBoundaries found = boundaries(run);
+        EXPECT_GT(share_found(truth.left, found.left), 0.95) << name;
+        EXPECT_GT(share_found(truth.right, found.right), 0.95) << name;
+        EXPECT_GT(share_found(found.left, truth.left), 0.95) << name;
+        EXPECT_GT(share_found(found.right, truth.right), 0.95) << name;
+    }
+}
+
+TEST_F(RunLog, ADrivenPathWithoutALaneIsRefused) {
+    const auto file = file_with(R"({"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"x": 5, "y": 2}]})",
+                                "short.frames.jsonl");
+    EXPECT_THAT(refusal<InputError>([&] { (void)read_driven_run(file); }),
+                AllOf(HasSubstr("short.frames.jsonl"), HasSubstr("bound no lane")));
+}
+
+/// Its colors, which the driven path does without, say the same of a recorded run.
+TEST(RecordedRuns, AreLabelledByTheDrivenPathAsByTheirColors) {
+    const std::filesystem::path run = recorded_data() / "ft_fsd" / "fsg_19_2_laps.json";
+    if (!std::filesystem::exists(run)) GTEST_SKIP() << "no ft_fsd in CONELANE_DATA or in ../shared/data";
+    const Track colored = read_run_log(run);
+    const Track driven = read_driven_run(run);
+    EXPECT_TRUE(driven.closed);
+    EXPECT_GT(share_found(boundaries(colored).left, boundaries(driven).left), 0.95);
+    EXPECT_GT(share_found(boundaries(colored).right, boundaries(driven).right), 0.95);
+    EXPECT_GT(share_found(boundaries(driven).left, boundaries(colored).left), 0.95);
+    EXPECT_GT(share_found(boundaries(driven).right, boundaries(colored).right), 0.95);
 }
 
 }  // namespace
