@@ -71,6 +71,23 @@ const AnnotatedScene& ScenesById::of(const std::string& id, const fs::path& file
     throw InputError(file, line, "scene", "'" + id + "' is not in " + file_.string());
 }
 
+CLI::Option* add_number_option(CLI::App& command, const std::string& name, double& value, double low,
+                               double high, const std::string& help) {
+    return command.add_option(name, value, help)
+        ->check(CLI::Range(low, high) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
+        ->capture_default_str();
+}
+
+CLI::Option* add_word_option(CLI::App& command, const std::string& name, std::string& value,
+                             const std::vector<std::string>& words, const std::string& help) {
+    CLI::Option* const option = command.add_option(name, value, help)->check(CLI::IsMember(words));
+    return value.empty() ? option : option->capture_default_str();
+}
+
+Scene cones_asked_for(const Scene& scene, std::optional<std::size_t> nearest) {
+    return nearest ? nearest_ahead(scene, *nearest) : scene;
+}
+
 LineOutput::LineOutput(const std::string& out) {
     if (out != kStandardStream) file_.emplace(out);
 }

@@ -15,7 +15,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 /// What several commands do.
 namespace conelane::experiments {
@@ -47,6 +48,15 @@ class ScenesById {
 
 /// Declares the fields that have an option. The values must outlive the command.
 void add_field_options(CLI::App& command, const OptionFields& fields);
+/// Declares a number in a range, with its default. CLI::Range alone would accept NaN.
+CLI::Option* add_number_option(CLI::App& command, const std::string& name, double& value, double low,
+                               double high, const std::string& help);
+/// Declares one of some words, with its default if it has one.
+CLI::Option* add_word_option(CLI::App& command, const std::string& name, std::string& value,
+                             const std::vector<std::string>& words, const std::string& help);
+
+/// The scene with only its `nearest` cones ahead; the whole scene if that is absent.
+[[nodiscard]] Scene cones_asked_for(const Scene& scene, std::optional<std::size_t> nearest);
 
 /// Output line by line: a file that appears when it is complete, or standard output at once.
 class LineOutput {

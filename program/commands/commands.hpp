@@ -1,9 +1,18 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "experiments/options/shared_options.hpp"
 
-/// The sub-commands of the program `conelane`, a file each. `add_X` declares the options of X; the callback
-/// runs it. An exception of a command becomes one line on stderr and exit code 2.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+/// The sub-commands of the program `conelane`, a file each, and the headers that all of them need. `add_X`
+/// declares the options of X; the callback runs it. An exception of a command becomes one line on stderr and
+/// exit code 2.
 namespace conelane::experiments {
 
 void add_scenes_command(CLI::App& program);

@@ -1,11 +1,6 @@
 #include "experiments/cross_validation/cross_validation.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace conelane::experiments {
 namespace {

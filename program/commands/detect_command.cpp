@@ -2,19 +2,12 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
 #include <cstddef>
 #include <iostream>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {

@@ -1,17 +1,8 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
-
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {

@@ -6,7 +6,6 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
@@ -18,11 +17,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace conelane::experiments {
