@@ -77,18 +77,9 @@ constexpr std::string_view kShapeCourses[]{"fsd_1", "fsd_2", "fsd_4", "fsd_5", "
 constexpr std::string_view kDelaunayBeamCourses[]{
     "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
 /// The same, and the courses in view when hitting a cone got a cost.
-constexpr std::string_view kAstarLaneCourses[]{"fsd_1",
-                                               "fsd_2",
-                                               "fsd_4",
-                                               "fsd_5",
-                                               "fsd_6",
-                                               "fsd_7",
-                                               "fsd_9",
-                                               "pacsim_FSE22",
-                                               "pacsim_FSG19",
-                                               "pacsim_FSO20",
-                                               "eufs_small_track",
-                                               "eufs_peanut"};
+constexpr std::array<std::string_view, 12> kAstarLaneCourses{
+    {"fsd_1", "fsd_2", "fsd_4", "fsd_5", "fsd_6", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19",
+     "pacsim_FSO20", "eufs_small_track", "eufs_peanut"}};
 
 constexpr DetectorRecipe kRecipes[]{
     {{"front",

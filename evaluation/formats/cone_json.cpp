@@ -1,5 +1,7 @@
 #include "evaluation/formats/cone_json.hpp"
 
+#include "model/position_covariance.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -6,8 +6,6 @@
 #include "model/geometry.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>

@@ -41,11 +41,9 @@ PermutedProgram permuted(const BinaryProgram& program, std::uint64_t seed) {
     std::vector<std::pair<std::size_t, double>> terms;
     for (const std::size_t row : drawn_order(program.rows.size(), "rows", seed)) {
         terms.clear();
-        for (int e = program.row_starts[row]; e < program.row_starts[row + 1]; ++e) {
-            const auto entry = static_cast<std::size_t>(e);
-            terms.emplace_back(made.column_of[static_cast<std::size_t>(program.entry_columns[entry])],
-                               program.entry_values[entry]);
-        }
+        program.for_each_entry(row, [&](std::size_t column, double value) {
+            terms.emplace_back(made.column_of[column], value);
+        });
         std::ranges::sort(terms);
         const BinaryProgram::RowBounds& bounds = program.rows[row];
         writer.begin(bounds.label, bounds.lower, bounds.upper);

@@ -3,11 +3,9 @@
 #include "evaluation/proofs/exact_costs.hpp"
 #include "evaluation/proofs/walk_bounds.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <set>
-#include <unordered_map>
 #include <vector>
 
 namespace conelane {

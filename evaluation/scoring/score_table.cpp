@@ -154,6 +154,25 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
     return lines;
 }
 
+/// Bins as [lanes, mean confidence, share usable], without empty bins.
+nlohmann::ordered_json to_json(const Calibration& calibration) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    const auto put_if_known = [&](const char* key, const auto& value) {
+        if (value) json[key] = *value;
+    };
+    put_if_known("error", calibration.error());
+    put_if_known("sure_share", calibration.sure());
+    put_if_known("usable_where_sure_share", calibration.usable_where_sure());
+    put_if_known("right_where_trusted_share", calibration.right_where_trusted());
+    put_if_known("trusted_share", calibration.trusted_share());
+    for (const Calibration::Bin& bin : calibration.bins()) {
+        if (bin.lanes == 0) continue;
+        const auto lanes = static_cast<double>(bin.lanes);
+        json["bins"].push_back({bin.lanes, bin.confidence / lanes, static_cast<double>(bin.usable) / lanes});
+    }
+    return json;
+}
+
 }  // namespace
 
 std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
@@ -212,29 +231,6 @@ std::string score_table(std::span<const ScoreRow> rows) {
 std::string ScoreKey::detector_label() const {
     return nearest ? fmt::format("{} n={}", detector, *nearest) : detector;
 }
-
-namespace {
-
-/// Bins as [lanes, mean confidence, share usable], without empty bins.
-nlohmann::ordered_json to_json(const Calibration& calibration) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    const auto put_if_known = [&](const char* key, const auto& value) {
-        if (value) json[key] = *value;
-    };
-    put_if_known("error", calibration.error());
-    put_if_known("sure_share", calibration.sure());
-    put_if_known("usable_where_sure_share", calibration.usable_where_sure());
-    put_if_known("right_where_trusted_share", calibration.right_where_trusted());
-    put_if_known("trusted_share", calibration.trusted_share());
-    for (const Calibration::Bin& bin : calibration.bins()) {
-        if (bin.lanes == 0) continue;
-        const auto lanes = static_cast<double>(bin.lanes);
-        json["bins"].push_back({bin.lanes, bin.confidence / lanes, static_cast<double>(bin.usable) / lanes});
-    }
-    return json;
-}
-
-}  // namespace
 
 nlohmann::ordered_json summary_json(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;

@@ -6,7 +6,6 @@
 #include "evaluation/world/scene_options.hpp"
 #include "evaluation/world/track.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

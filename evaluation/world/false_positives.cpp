@@ -18,6 +18,18 @@ namespace {
 
 constexpr std::array kFalseColors{ConeColor::blue, ConeColor::yellow, ConeColor::unknown};
 
+/// Mean of the densities that the views containing a point want; 0 if no view contains it.
+double mean_expected_points(std::span<const PersistentView> views, const Point& point) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const PersistentView& view : views) {
+        if (!view.view.contains(point)) continue;
+        sum += view.expected_points;
+        ++count;
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
 }  // namespace
 
 FalsePositives::FalsePositives(const Course& course, bool with_color)
@@ -67,22 +79,6 @@ std::vector<Cone> persistent_false_positives(const Course& course, const SceneOp
     for (const Point& point : points) cones.push_back(false_positives.draw(rounded(point), random));
     return cones;
 }
-
-namespace {
-
-/// Mean of the densities that the views containing a point want; 0 if no view contains it.
-double mean_expected_points(std::span<const PersistentView> views, const Point& point) {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const PersistentView& view : views) {
-        if (!view.view.contains(point)) continue;
-        sum += view.expected_points;
-        ++count;
-    }
-    return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-}  // namespace
 
 std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
                                           boost::random::mt19937_64& random) {

@@ -3,7 +3,6 @@
 #include "evaluation/world/course.hpp"
 #include "evaluation/world/scene_draws.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <unordered_set>

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <span>
 #include <string_view>
-#include <utility>
 
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>

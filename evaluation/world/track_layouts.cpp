@@ -58,19 +58,6 @@ TrackLayout layout_of(const FixedLayout& fixed) {
     return layout;
 }
 
-}  // namespace
-
-std::span<const TrackLayout> track_layouts() {
-    static const std::vector<TrackLayout> layouts = [] {
-        std::vector<TrackLayout> all;
-        std::ranges::transform(kFixedLayouts, std::back_inserter(all), layout_of);
-        return all;
-    }();
-    return layouts;
-}
-
-namespace {
-
 class Draw {
   public:
     Draw(std::string_view name, std::uint64_t seed)
@@ -143,6 +130,15 @@ std::vector<Corner> drawn_loop(int fewest, int most, double least_radius_m, Draw
 }
 
 }  // namespace
+
+std::span<const TrackLayout> track_layouts() {
+    static const std::vector<TrackLayout> layouts = [] {
+        std::vector<TrackLayout> all;
+        std::ranges::transform(kFixedLayouts, std::back_inserter(all), layout_of);
+        return all;
+    }();
+    return layouts;
+}
 
 std::span<const std::string_view> drawn_layout_names() {
     static constexpr std::array<std::string_view, 4> kNames{"legs", "tight_hairpins", "gates", "wide"};

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <utility>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <tuple>
 
 namespace conelane {
 namespace {
@@ -371,28 +370,26 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
     const Point& at = map.position(own.cones[0]);
     const Point& facing = map.position(other.cones[0]);
     const double in = inward(side);
-    const double skew_rad = in * turn(own.bearing_rad, other.bearing_rad);
     const Point along = own.direction + other.direction;
     const double along_norm = along.norm();
-    const double lag_m = along_norm > 0.0 ? (facing - at).dot(along) / along_norm : 0.0;
-    const double distance_m = at.norm();
     StateColors colors;
     if (map.has_colors()) {
         colors = {map.color_share(), map.color_consistency(), state.color_agreement(),
                   map.color(own.cones[0]).speaks_for(side),
                   map.color(other.cones[0]).speaks_for(opposite(side))};
     }
-    return values_of<kStateSchema>(StateSeen{.own = own,
-                                             .other = other,
-                                             .measures = measures,
-                                             .in = in,
-                                             .skew_rad = skew_rad,
-                                             .ends_apart_m = (facing - at).norm(),
-                                             .lag_m = lag_m,
-                                             .distance_m = distance_m,
-                                             .view_m = map.view_radius_m(),
-                                             .density = map.density(own.cones[0]),
-                                             .colors = colors});
+    const StateSeen seen{.own = own,
+                         .other = other,
+                         .measures = measures,
+                         .in = in,
+                         .skew_rad = in * turn(own.bearing_rad, other.bearing_rad),
+                         .ends_apart_m = (facing - at).norm(),
+                         .lag_m = along_norm > 0.0 ? (facing - at).dot(along) / along_norm : 0.0,
+                         .distance_m = at.norm(),
+                         .view_m = map.view_radius_m(),
+                         .density = map.density(own.cones[0]),
+                         .colors = colors};
+    return values_of<kStateSchema>(seen);
 }
 
 ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side, const FrontMove& move,
@@ -405,15 +402,8 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
     const Point& at = map.position(move.to);
     const Point& facing = map.position(other.cones[0]);
     const double in = inward(side);
-    const double length_m = edge.length_m;
     const double turn_rad = in * turn(own.bearing_rad, edge.bearing_rad);
-    const double change_rad = own.count > 2 ? wrapped_angle(turn_rad - in * own.turn_rad) : 0.0;
-    const double turn_other_rad = other.count > 2 ? wrapped_angle(turn_rad - in * other.turn_rad) : 0.0;
-    const double skew_rad = in * turn(edge.bearing_rad, other.bearing_rad);
-    const double width_m = facing_distance_m(map, other, at);
     const double mean_width_m = measures.mean_width_m;
-    const float log_own = own.count > 1 ? edge.log_length - own.log_segment : 0.0F;
-    const float log_other = other.count > 1 ? edge.log_length - other.log_segment : 0.0F;
     // The place across: to the right of a left boundary.
     const Point across = at + in * mean_width_m * Point(-edge.direction.y(), edge.direction.x());
     double partner_m2 = (facing - across).squaredNorm();
@@ -433,7 +423,6 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
         partner = near.to;
         break_m = farthest_m();
     }
-    const float inside = inside_triangle(map, from, at, facing, move.to, other.cones[0], measures);
     ExtendColors colors;
     if (map.has_colors()) {
         colors.cone = colors_of(map, move.to, side);
@@ -441,26 +430,28 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
         const double nearness = std::max(0.0, 1.0 - std::sqrt(partner_m2) / kPartnerReach_m);
         colors.partner = static_cast<float>(nearness) * map.color(partner).speaks_for(opposite(side));
     }
-    return values_of<kExtendSchema>(ExtendSeen{.measures = measures,
-                                               .about = about,
-                                               .edge = edge,
-                                               .other = other,
-                                               .side = side,
-                                               .at = at,
-                                               .facing = facing,
-                                               .length_m = length_m,
-                                               .turn_rad = turn_rad,
-                                               .change_rad = change_rad,
-                                               .turn_other_rad = turn_other_rad,
-                                               .skew_rad = skew_rad,
-                                               .width_m = width_m,
-                                               .mean_width_m = mean_width_m,
-                                               .view_m = map.view_radius_m(),
-                                               .partner_m2 = partner_m2,
-                                               .log_own = log_own,
-                                               .log_other = log_other,
-                                               .inside = inside,
-                                               .colors = colors});
+    const ExtendSeen seen{
+        .measures = measures,
+        .about = about,
+        .edge = edge,
+        .other = other,
+        .side = side,
+        .at = at,
+        .facing = facing,
+        .length_m = edge.length_m,
+        .turn_rad = turn_rad,
+        .change_rad = own.count > 2 ? wrapped_angle(turn_rad - in * own.turn_rad) : 0.0,
+        .turn_other_rad = other.count > 2 ? wrapped_angle(turn_rad - in * other.turn_rad) : 0.0,
+        .skew_rad = in * turn(edge.bearing_rad, other.bearing_rad),
+        .width_m = facing_distance_m(map, other, at),
+        .mean_width_m = mean_width_m,
+        .view_m = map.view_radius_m(),
+        .partner_m2 = partner_m2,
+        .log_own = own.count > 1 ? edge.log_length - own.log_segment : 0.0F,
+        .log_other = other.count > 1 ? edge.log_length - other.log_segment : 0.0F,
+        .inside = inside_triangle(map, from, at, facing, move.to, other.cones[0], measures),
+        .colors = colors};
+    return values_of<kExtendSchema>(seen);
 }
 
 StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
@@ -468,7 +459,6 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     const FrontEnd& own = state.ends[side];
     const FrontEnd& other = state.ends[opposite(side)];
     const Point& at = map.position(own.cones[0]);
-    const double view_m = map.view_radius_m();
     const auto length_of = [](const FrontEnd& end) {
         return end.count > 1 ? static_cast<double>(end.segment_m) : 3.5;
     };
@@ -476,7 +466,6 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     const Point straight = next_place(map, own, 0.0, length_of(own));
     const Point other_next = next_place(map, other, other.turn_rad, length_of(other));
     const auto [next_off_m, next_cones, next_cone] = nearest_to(map, own, other, next);
-    const double straight_off_m = nearest_to(map, own, other, straight).off_m;
     constexpr std::size_t kTurnChangeSize = place_of(kExtendSchema, "turn_change_size");
     constexpr std::size_t kLogRatioOwnSize = place_of(kExtendSchema, "log_ratio_own_size");
     const std::size_t moves = extensions.size() / kExtendFeatures;
@@ -491,20 +480,20 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
         color_goes_on = std::max(color_goes_on, extension[kColorOwn] * (kRough - badness));
     }
     const bool color_known = map.has_colors() && next_cone != kNoCone;
-    const float color_next = color_known ? map.color(next_cone).speaks_for(side) : 0.0F;
-    return values_of<kStopSchema>(StopSeen{.at = at,
-                                           .distance_m = at.norm(),
-                                           .view_m = view_m,
-                                           .next = next,
-                                           .straight = straight,
-                                           .other_next = other_next,
-                                           .next_off_m = next_off_m,
-                                           .next_cones = next_cones,
-                                           .straight_off_m = straight_off_m,
-                                           .moves = moves,
-                                           .smoothest = smoothest,
-                                           .color_next = color_next,
-                                           .color_goes_on = color_goes_on});
+    const StopSeen seen{.at = at,
+                        .distance_m = at.norm(),
+                        .view_m = map.view_radius_m(),
+                        .next = next,
+                        .straight = straight,
+                        .other_next = other_next,
+                        .next_off_m = next_off_m,
+                        .next_cones = next_cones,
+                        .straight_off_m = nearest_to(map, own, other, straight).off_m,
+                        .moves = moves,
+                        .smoothest = smoothest,
+                        .color_next = color_known ? map.color(next_cone).speaks_for(side) : 0.0F,
+                        .color_goes_on = color_goes_on};
+    return values_of<kStopSchema>(seen);
 }
 
 StartCone start_cone(FrontMap& map, Vertex cone) {
@@ -531,11 +520,7 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
     const Point& a = map.position(own.cone);
     const Point& b = map.position(other.cone);
     const double outward = -inward(side);
-    const double own_out_m = outward * a.y();
-    const double other_out_m = -outward * b.y();
     const double width_m = (a - b).norm();
-    const double lead_m = a.x() - b.x();
-    const double middle_m = outward * (a.y() + b.y()) / 2.0;
     // Cones in the triangle of the car and the pair.
     float inside = 0.0F;
     const double area = cross(a, b);
@@ -550,17 +535,18 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
     }
     ConeColors colors;
     if (map.has_colors()) colors = colors_of(map, own.cone, side);
-    return values_of<kStartSchema>(StartSeen{.own = own,
-                                             .other = other,
-                                             .a = a,
-                                             .b = b,
-                                             .own_out_m = own_out_m,
-                                             .other_out_m = other_out_m,
-                                             .width_m = width_m,
-                                             .lead_m = lead_m,
-                                             .middle_m = middle_m,
-                                             .inside = inside,
-                                             .colors = colors});
+    const StartSeen seen{.own = own,
+                         .other = other,
+                         .a = a,
+                         .b = b,
+                         .own_out_m = outward * a.y(),
+                         .other_out_m = -outward * b.y(),
+                         .width_m = width_m,
+                         .lead_m = a.x() - b.x(),
+                         .middle_m = outward * (a.y() + b.y()) / 2.0,
+                         .inside = inside,
+                         .colors = colors};
+    return values_of<kStartSchema>(seen);
 }
 
 }  // namespace conelane

@@ -3,7 +3,6 @@
 #include "conelane/invalid_input.hpp"
 
 #include <cmath>
-#include <string>
 #include <tuple>
 #include <utility>
 
