@@ -13,10 +13,8 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
-#include <string>
 #include <utility>
 
 namespace conelane {
@@ -54,13 +52,8 @@ constexpr TunedRecipe tuned() {
     return {[] {
                 std::vector<TunableParameter> all;
                 for (const ParameterField<Parameters>& field : fields()) {
-                    all.push_back({.key = field.key,
-                                   .unit = field.unit,
-                                   .lowest = field.lowest,
-                                   .highest = field.highest,
-                                   .logarithmic = field.logarithmic,
-                                   .description = field.description,
-                                   .start = Parameters{}.*field.value});
+                    all.push_back({field.key, field.unit, field.lowest, field.highest, field.logarithmic,
+                                   field.description, Parameters{}.*field.value});
                 }
                 return all;
             },

@@ -9,7 +9,7 @@
 #include "experiments/training/front_gradient.hpp"
 #include "experiments/training/training_loop.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include "experiments/training/front_judge_learner.hpp"
 #include "experiments/training/front_learner.hpp"
 #include "experiments/training/front_scenes.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/testing.hpp"
 
