@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <tuple>
-#include <type_traits>
 #include <unordered_map>
 
 namespace conelane::python {
