@@ -2,7 +2,6 @@
 
 #include "model/position_covariance.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 

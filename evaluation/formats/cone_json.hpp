@@ -3,9 +3,6 @@
 #include "conelane/scene.hpp"
 #include "evaluation/formats/json_records.hpp"
 
-#include <array>
-#include <optional>
-
 namespace conelane {
 
 /// `color` and `color_probabilities` ([unknown, blue, yellow, orange, big orange]) of a cone, each of which

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <csignal>
 #include <ctime>
-#include <string>
 #include <system_error>
 #include <thread>
 

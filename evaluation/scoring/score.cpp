@@ -2,8 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/divergence.hpp"
-#include "evaluation/scoring/driven_path.hpp"
-#include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/world/ground_truth.hpp"
 #include "model/geometry.hpp"
 

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <vector>
 
 namespace conelane {
 namespace {
@@ -39,6 +37,11 @@ double share_at_most(std::size_t n, std::size_t rank_sum) {
 }
 
 }  // namespace
+
+std::optional<double> share(std::size_t part, std::size_t whole) {
+    if (whole == 0) return std::nullopt;
+    return static_cast<double>(part) / static_cast<double>(whole);
+}
 
 double median(std::span<const double> sample) {
     require_values(sample);

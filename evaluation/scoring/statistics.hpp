@@ -15,6 +15,9 @@ inline constexpr double kRealTimeBudget_ms = 50.0;
 /// Shift of the shifted geometric mean of times [ms].
 inline constexpr double kGeometricMeanShift_ms = 1.0;
 
+/// part / whole; nothing if the whole is 0.
+[[nodiscard]] std::optional<double> share(std::size_t part, std::size_t whole);
+
 /// Every function throws InvalidInput if the sample is empty. Values need not be sorted.
 
 /// The middle value; for an even count, the mean of the two middle values.

@@ -2,17 +2,13 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/course.hpp"
-#include "evaluation/world/false_positives.hpp"
 #include "evaluation/world/ground_truth.hpp"
-#include "evaluation/world/scene_draws.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstddef>
 #include <future>
 #include <iterator>
 #include <optional>
@@ -20,7 +16,6 @@
 #include <string_view>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include <boost/random/beta_distribution.hpp>
 #include <boost/random/normal_distribution.hpp>

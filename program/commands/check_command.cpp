@@ -2,7 +2,6 @@
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "evaluation/proofs/claim_verdict.hpp"
 #include "evaluation/proofs/exact_program.hpp"
 #include "evaluation/world/ground_truth.hpp"
 #include "experiments/progress/progress.hpp"
