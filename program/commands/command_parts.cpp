@@ -2,11 +2,11 @@
 
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
+#include "graph_search/front/front_weights.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -27,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kRefused = 2;  ///< exit code where the package has printed the reason
+
 void write_page(const fs::path& directory) {
     const fs::path page = directory / "report.html";
     try {
@@ -36,8 +38,7 @@ void write_page(const fs::path& directory) {
         return;
     } catch (const PackageRefused&) {
         fmt::print("results: {}, without a page\n", directory.string());
-        constexpr int kFailed = 2;
-        throw CLI::RuntimeError(kFailed);  // it has printed the reason
+        throw CLI::RuntimeError(kRefused);
     } catch (const std::exception&) {
         fmt::print("results: {}, without a page\n", directory.string());
         throw;
@@ -128,6 +129,20 @@ void report_errors(const AnswerErrors& errors) {
     constexpr int kNothingAnswered = 1;
     for (const std::string& line : errors.lines()) fmt::print(stderr, "conelane: {}\n", line);
     if (errors.any_answered_nothing()) throw CLI::RuntimeError(kNothingAnswered);
+}
+
+void report_errors(std::span<const LaneRecord> answers) {
+    AnswerErrors errors;
+    for (const LaneRecord& record : answers) add_answer_of(errors, record);
+    report_errors(errors);
+}
+
+void call_package(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const PackageRefused&) {
+        throw CLI::RuntimeError(kRefused);
+    }
 }
 
 void add_field_options(CLI::App& command, const OptionFields& fields) {

@@ -8,7 +8,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -85,5 +87,9 @@ void finish_comparison(const ComparisonOutcome& outcome, const std::filesystem::
 /// answers. Throws CLI::RuntimeError of exit code 1 if a method answered nothing at all. What the command
 /// writes is in place by then.
 void report_errors(const AnswerErrors& errors);
+void report_errors(std::span<const LaneRecord> answers);
+
+/// Runs a call of the Python package. Throws CLI::RuntimeError if it refused, which has printed the reason.
+void call_package(const std::function<void()>& call);
 
 }  // namespace conelane::experiments

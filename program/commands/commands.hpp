@@ -2,11 +2,6 @@
 
 #include "experiments/options/shared_options.hpp"
 
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 

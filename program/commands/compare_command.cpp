@@ -1,4 +1,3 @@
-#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"

@@ -76,12 +76,10 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
 /// The page that plays a run, of its frames and plans.
 void write_page(const FollowOptions& options, const std::filesystem::path& plans) {
     const std::filesystem::path made = plans.parent_path() / "page.html";
-    try {
+    call_package([&] {
         run_package("report.replay", {options.frames, plans, made, fmt::format("{}", options.interval_s)},
                     options.python, false);
-    } catch (const PackageRefused&) {
-        throw CLI::RuntimeError(2);  // it has printed the reason
-    }
+    });
     put_in_place({{made, options.page}});
 }
 
@@ -226,12 +224,6 @@ DrivableRecord drive(const LaneRecord& record, const Scene& scene, const DriveOp
     }
 }
 
-AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
-    AnswerErrors errors;
-    for (const LaneRecord& record : records) add_answer_of(errors, record);
-    return errors;
-}
-
 void drive_all(const DriveOptions& options) {
     for (const auto& [name, value] : {std::pair("--lanes", &options.lanes), {"--scenes", &options.scenes}}) {
         if (value->empty()) throw InvalidInput(name, "is required, or --follow");
@@ -244,7 +236,7 @@ void drive_all(const DriveOptions& options) {
         lanes.push_back(drive(record, scenes.of(record.scene, options.lanes, record.line).scene, options));
     if (options.format == "json") {
         write_drivable_lanes(options.out, lanes);
-        report_errors(errors_among(records));
+        report_errors(records);
         return;
     }
     const LaneRecord& only = records.front();

@@ -5,7 +5,7 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/proofs/claim_verdict.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "model/connecting_flow.hpp"
 #include "model/lane_graph_model.hpp"
 #include "program/commands/command_parts.hpp"

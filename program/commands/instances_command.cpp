@@ -1,5 +1,4 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/track_spec.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"

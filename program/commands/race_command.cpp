@@ -3,7 +3,6 @@
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"

@@ -19,15 +19,6 @@
 namespace conelane::experiments {
 namespace {
 
-template <typename Call>
-void call_package(const Call& call) {
-    try {
-        call();
-    } catch (const PackageRefused&) {
-        throw CLI::RuntimeError(2);  // it has printed the reason
-    }
-}
-
 struct ReportOptions {
     std::string results;
     std::string page;
