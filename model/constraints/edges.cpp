@@ -26,8 +26,7 @@ void turn_limits(const FamilyContext& context) {
     for (std::size_t turn = 0; turn < problem.turns.size(); ++turn) {
         if (!problem.turns[turn].high_cost) continue;
         if (rows.stop()) return;
-        rows.write({"angle_limit", {static_cast<std::int32_t>(turn)}}, 0.0, 0.0,
-                   {{columns.turn[turn], 1.0}});
+        rows.write({"angle_limit", {static_cast<std::int32_t>(turn)}}, 0.0, 0.0, {{columns.turn[turn], 1.0}});
     }
 }
 
