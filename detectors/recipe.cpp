@@ -13,10 +13,8 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
-#include <string>
 #include <utility>
 
 namespace conelane {
@@ -54,13 +52,8 @@ constexpr TunedRecipe tuned() {
     return {[] {
                 std::vector<TunableParameter> all;
                 for (const ParameterField<Parameters>& field : fields()) {
-                    all.push_back({.key = field.key,
-                                   .unit = field.unit,
-                                   .lowest = field.lowest,
-                                   .highest = field.highest,
-                                   .logarithmic = field.logarithmic,
-                                   .description = field.description,
-                                   .start = Parameters{}.*field.value});
+                    all.push_back({field.key, field.unit, field.lowest, field.highest, field.logarithmic,
+                                   field.description, Parameters{}.*field.value});
                 }
                 return all;
             },
@@ -77,18 +70,9 @@ constexpr std::string_view kShapeCourses[]{"fsd_1", "fsd_2", "fsd_4", "fsd_5", "
 constexpr std::string_view kDelaunayBeamCourses[]{
     "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
 /// The same, and the courses in view when hitting a cone got a cost.
-constexpr std::string_view kAstarLaneCourses[]{"fsd_1",
-                                               "fsd_2",
-                                               "fsd_4",
-                                               "fsd_5",
-                                               "fsd_6",
-                                               "fsd_7",
-                                               "fsd_9",
-                                               "pacsim_FSE22",
-                                               "pacsim_FSG19",
-                                               "pacsim_FSO20",
-                                               "eufs_small_track",
-                                               "eufs_peanut"};
+constexpr std::array<std::string_view, 12> kAstarLaneCourses{
+    {"fsd_1", "fsd_2", "fsd_4", "fsd_5", "fsd_6", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19",
+     "pacsim_FSO20", "eufs_small_track", "eufs_peanut"}};
 
 constexpr DetectorRecipe kRecipes[]{
     {{"front",

@@ -3,7 +3,6 @@
 #include "conelane/detectors.hpp"
 #include "conelane/rld_detector.hpp"
 #include "conelane/rld_solver.hpp"
-#include "detectors/parameters/parameter_files.hpp"
 #include "graph_search/weights/weight_files.hpp"
 
 #include <array>
@@ -16,6 +15,11 @@
 #include <vector>
 
 namespace conelane {
+
+// The files in parameters/, byte by byte, embedded when the library was configured.
+extern const std::string_view kLearnedWeightsFile;
+/// NAME.json; empty if there is none.
+[[nodiscard]] std::string_view parameter_file(std::string_view name);
 
 struct FrontOptions;
 

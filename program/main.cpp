@@ -3,7 +3,6 @@
 #include "evaluation/formats/interruption.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "experiments/options/command_line.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
@@ -14,16 +13,11 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 

@@ -1,6 +1,7 @@
 #include "evaluation/formats/cone_json.hpp"
 
-#include <array>
+#include "model/position_covariance.hpp"
+
 #include <cmath>
 #include <cstddef>
 

@@ -4,7 +4,6 @@
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/track_readers.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/world/track.hpp"
 #include "evaluation/world/track_checks.hpp"
 
 #include <algorithm>

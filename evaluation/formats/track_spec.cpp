@@ -9,11 +9,9 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <set>
-#include <string_view>
 
 #include <fmt/core.h>
 

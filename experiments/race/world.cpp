@@ -1,8 +1,7 @@
 #include "experiments/race/world.hpp"
 
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/world/false_positives.hpp"
-#include "evaluation/world/scene_draws.hpp"
+#include "evaluation/world/course.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/version.hpp"
-#include "evaluation/outside/solver_input.hpp"
+#include "evaluation/outside/outside_solver.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 

@@ -1,7 +1,6 @@
 #include "experiments/studies/backend_measures.hpp"
 
 #include "evaluation/scoring/statistics.hpp"
-#include "evaluation/scoring/wilcoxon.hpp"
 
 #include <algorithm>
 #include <array>

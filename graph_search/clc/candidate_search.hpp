@@ -121,7 +121,6 @@ class CandidateSearch {
     std::size_t seed_count_ = 0;
     PathPairEnumeration enumeration_;
     PathPairs pairs_;
-    std::vector<Vertex> side_;
     std::vector<Point> points_;
 };
 

@@ -86,8 +86,6 @@ class PathPairs {
     /// One entry for each pair found, if features were requested.
     [[nodiscard]] std::span<const LaneFeatures> features() const { return features_; }
     [[nodiscard]] PathPairVertices vertices(const PathPair& pair) const;
-    /// The vertices of one side, into `vertices`.
-    void vertices(const PathPair& pair, Side side, std::vector<Vertex>& vertices) const;
 
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     /// Returns the number of the new step. The first two of a pair are its start, left and right.

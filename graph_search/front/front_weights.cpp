@@ -1,7 +1,7 @@
 #include "graph_search/front/front_weights.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 #include "graph_search/shared/weights_reader.hpp"
 
 #include <algorithm>

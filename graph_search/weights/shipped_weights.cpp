@@ -6,8 +6,6 @@
 #include "graph_search/shared/weights_reader.hpp"
 #include "graph_search/weights/weight_files.hpp"
 
-#include <string>
-
 namespace conelane {
 namespace {
 

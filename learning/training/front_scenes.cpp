@@ -5,7 +5,6 @@
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/course.hpp"
-#include "evaluation/world/scene_draws.hpp"
 #include "evaluation/world/scene_generation.hpp"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 #include "learning/training/front_gradient.hpp"
 #include "learning/training/training_loop.hpp"
 

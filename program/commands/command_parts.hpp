@@ -9,7 +9,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -44,6 +46,15 @@ class ScenesById {
 
 /// Declares the fields that have an option. The values must outlive the command.
 void add_field_options(CLI::App& command, const OptionFields& fields);
+/// Declares a number in a range, with its default. CLI::Range alone would accept NaN.
+CLI::Option* add_number_option(CLI::App& command, const std::string& name, double& value, double low,
+                               double high, const std::string& help);
+/// Declares one of some words, with its default if it has one.
+CLI::Option* add_word_option(CLI::App& command, const std::string& name, std::string& value,
+                             const std::vector<std::string>& words, const std::string& help);
+
+/// The scene with only its `nearest` cones ahead; the whole scene if that is absent.
+[[nodiscard]] Scene cones_asked_for(const Scene& scene, std::optional<std::size_t> nearest);
 
 /// Output line by line: a file that appears when it is complete, or standard output at once.
 class LineOutput {
@@ -72,5 +83,9 @@ void finish_comparison(const ComparisonOutcome& outcome, const std::filesystem::
 /// answers. Throws CLI::RuntimeError of exit code 1 if a method answered nothing at all. What the command
 /// writes is in place by then.
 void report_errors(const AnswerErrors& errors);
+void report_errors(std::span<const LaneRecord> answers);
+
+/// Runs a call of the Python package. Throws CLI::RuntimeError if it refused, which has printed the reason.
+void call_package(const std::function<void()>& call);
 
 }  // namespace conelane::program

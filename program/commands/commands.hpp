@@ -1,12 +1,15 @@
 #pragma once
 
+#include "experiments/options/shared_options.hpp"
+
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace conelane::learning {}
-namespace conelane::experiments {}
 
-/// The sub-commands of the program `conelane`, a file each. `add_X` declares the options of X; the callback
-/// runs it. An exception of a command becomes one line on stderr and exit code 2.
+/// The sub-commands of the program `conelane`, a file each, and the headers that all of them need. `add_X`
+/// declares the options of X; the callback runs it. An exception of a command becomes one line on stderr and
+/// exit code 2.
 namespace conelane::program {
 
 using namespace experiments;  // whose parts the commands call

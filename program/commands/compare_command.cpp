@@ -1,17 +1,11 @@
-#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace conelane::program {
 namespace {

@@ -1,12 +1,5 @@
 #include "experiments/cross_check/cross_check.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
-
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {

@@ -2,19 +2,12 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
 #include <cstddef>
 #include <iostream>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {
@@ -89,9 +82,7 @@ void detect(DetectOptions& options) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     const std::vector<LaneRecord> lanes = run(method, scenes, options.run);
     write_lanes(options.out, lanes);
-    AnswerErrors errors;
-    for (const LaneRecord& record : lanes) add_answer_of(errors, record);
-    report_errors(errors);
+    report_errors(lanes);
 }
 
 void list_solvers() {

@@ -6,19 +6,12 @@
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/report/package.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <iostream>
-#include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {
@@ -83,12 +76,10 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
 /// The page that plays a run, of its frames and plans.
 void write_page(const FollowOptions& options, const std::filesystem::path& plans) {
     const std::filesystem::path made = plans.parent_path() / "page.html";
-    try {
+    call_package([&] {
         run_package("report.replay", {options.frames, plans, made, fmt::format("{}", options.interval_s)},
                     options.python, false);
-    } catch (const PackageRefused&) {
-        throw CLI::RuntimeError(2);  // it has printed the reason
-    }
+    });
     put_in_place({{made, options.page}});
 }
 
@@ -233,12 +224,6 @@ DrivableRecord drive(const LaneRecord& record, const Scene& scene, const DriveOp
     }
 }
 
-AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
-    AnswerErrors errors;
-    for (const LaneRecord& record : records) add_answer_of(errors, record);
-    return errors;
-}
-
 void drive_all(const DriveOptions& options) {
     for (const auto& [name, value] : {std::pair("--lanes", &options.lanes), {"--scenes", &options.scenes}}) {
         if (value->empty()) throw InvalidInput(name, "is required, or --follow");
@@ -251,7 +236,7 @@ void drive_all(const DriveOptions& options) {
         lanes.push_back(drive(record, scenes.of(record.scene, options.lanes, record.line).scene, options));
     if (options.format == "json") {
         write_drivable_lanes(options.out, lanes);
-        report_errors(errors_among(records));
+        report_errors(records);
         return;
     }
     const LaneRecord& only = records.front();
@@ -272,19 +257,18 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
         "--follow", options.frames,
         "frames of a run, one plan a line: *.frames.jsonl, a run of ft-fsd (JSON), - for standard input");
     for (const char* const other : {"--lanes", "--scenes", "--id"}) follow->excludes(other);
-    command.add_option("--mission", options.mission, "trackdrive, autocross, acceleration, skidpad")
-        ->needs(follow)
-        ->check(CLI::IsMember({"trackdrive", "autocross", "acceleration", "skidpad"}))
-        ->capture_default_str();
+    add_word_option(command, "--mission", options.mission,
+                    {"trackdrive", "autocross", "acceleration", "skidpad"},
+                    "trackdrive, autocross, acceleration, skidpad")
+        ->needs(follow);
     command.add_option("--laps", options.laps, "laps of trackdrive (10) and autocross (1)")
         ->needs(follow)
         ->check(CLI::Range(1, 1'000'000));
     command.add_option("--weights", options.weights, "weights of front or front-warm, see detect")
         ->needs(follow);
-    command.add_option("--interval", options.interval_s, "time between frames that have no time [s]")
-        ->needs(follow)
-        ->check(CLI::Range(0.001, 10.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
-        ->capture_default_str();
+    add_number_option(command, "--interval", options.interval_s, 0.001, 10.0,
+                      "time between frames that have no time [s]")
+        ->needs(follow);
     add_output_option(command, "--page", options.page,
                       "PAGE.html, which plays the run: cones, lanes, trust, where there was no lane and why")
         ->needs(follow);
@@ -304,22 +288,17 @@ void add_drive_command(CLI::App& program) {
     auto options = std::make_shared<DriveOptions>();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl");
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl, the scenes of the lanes");
-    command
-        .add_option("--format", options->format,
+    add_word_option(command, "--format", options->format, {"json", "tum", "ftfsd"},
                     "json: a line for each lane; tum: x_m,y_m,w_tr_right_m,w_tr_left_m; "
-                    "ftfsd: s_m,x_m,y_m,curvature_1pm; the last two hold one lane, with --follow the course")
-        ->check(CLI::IsMember({"json", "tum", "ftfsd"}))
-        ->capture_default_str();
+                    "ftfsd: s_m,x_m,y_m,curvature_1pm; the last two hold one lane, with --follow the course");
     add_output_option(command, "--out", options->out,
                       "the file to write; with --follow - writes each line to standard output at once", true)
         ->required();
     command.add_option("--id", options->id, "only lanes of this scene");
     command.add_option("--method", options->detector,
                        "only lanes of this method; with --follow the detector, front-warm by default");
-    command
-        .add_option("--step", options->drivable.step_m, "distance from point to point [m], in [0.01, 100]")
-        ->check(CLI::Range(0.01, 100.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
-        ->capture_default_str();
+    add_number_option(command, "--step", options->drivable.step_m, 0.01, 100.0,
+                      "distance from point to point [m], in [0.01, 100]");
     add_follow_options(command, *options);
     command.callback([options] { options->frames.empty() ? drive_all(*options) : follow_frames(*options); });
 }

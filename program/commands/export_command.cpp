@@ -5,8 +5,7 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/proofs/claim_verdict.hpp"
-#include "experiments/options/shared_options.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "model/connecting_flow.hpp"
 #include "model/lane_graph_model.hpp"
 #include "program/commands/command_parts.hpp"
@@ -18,12 +17,6 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
 
 // Export and import are about the program of one scene. Rows that a solve adds on demand, (5) and the
 // pairing, are too many to write in full; a flow replaces them. With --rows-on-demand the file has neither:
@@ -44,11 +37,8 @@ struct ProgramSource {
 void add_program_options(CLI::App& command, ProgramSource& source) {
     command.add_option("--scenes", source.scenes, "*.scenes.jsonl")->required();
     command.add_option("--id", source.id, "id of the scene")->required();
-    command
-        .add_option("--formulation", source.formulation,
-                    "rows and columns of the program: tight, or paper as printed")
-        ->check(CLI::IsMember({"tight", "paper"}))
-        ->capture_default_str();
+    add_word_option(command, "--formulation", source.formulation, {"tight", "paper"},
+                    "rows and columns of the program: tight, or paper as printed");
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
     add_parameter_options(command, source.parameters, "the defaults");
     command.add_flag(
@@ -57,16 +47,11 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
         "is that of the scene (the default); --rows-on-demand leaves them out");
 }
 
-Scene load_scene(const ProgramSource& source) {
-    const AnnotatedScene found = scene_named(source.id, source.scenes);
-    return source.nearest ? nearest_ahead(found.scene, *source.nearest) : found.scene;
-}
-
 /// The program of a scene, with everything that it refers to.
 class SceneProgram {
   public:
     explicit SceneProgram(const ProgramSource& source)
-        : scene(load_scene(source)),
+        : scene(cones_asked_for(scene_named(source.id, source.scenes).scene, source.nearest)),
           formulation(source.formulation == "paper" ? Formulation::paper : Formulation::tight),
           parameters(source.parameters.load()),
           problem(make_problem(scene, parameters, parts(formulation).extent)),
@@ -106,12 +91,8 @@ void export_program(const ExportOptions& options) {
     const BinaryProgram& program = scene_program.program;
     AtomicFile file(options.out);
     // A name must be one word in these formats.
-    const std::string name = "conelane_" + options.source.formulation;
-    if (ending == ".mps") {
-        write_mps(file.stream(), program, name);
-    } else {
-        write_lp(file.stream(), program, name);
-    }
+    (ending == ".mps" ? write_mps : write_lp)(file.stream(), program,
+                                              "conelane_" + options.source.formulation);
     file.commit();
     fmt::print("{} columns and {} rows in {}\n", program.columns.size(), program.rows.size(), options.out);
 }
@@ -209,12 +190,9 @@ void add_export_command(CLI::App& program) {
         "solution of the scene, for `conelane check`.\n"
         "With --rows-on-demand the file leaves out the rows that conelane's solvers add on demand: no cycles "
         "(5), and the pairing near_far. A solution file whose point, objective or bound contradict each "
-        "other "
-        "or the program is refused, and so is an optimum that an own search within the time limit refutes; "
-        "one that "
-        "it does not prove is unverified and counts as feasible. A solution with a cycle or against the "
-        "pairing "
-        "is an error");
+        "other or the program is refused, and so is an optimum that an own search within the time limit "
+        "refutes; one that it does not prove is unverified and counts as feasible. A solution with a cycle "
+        "or against the pairing is an error");
     auto options = std::make_shared<ExportOptions>();
     add_program_options(command, options->source);
     CLI::Option& solution =

@@ -1,18 +1,10 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "experiments/instances/instance_library.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 
-#include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <set>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {

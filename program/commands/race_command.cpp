@@ -3,13 +3,11 @@
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/methods/learners.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/command_parts.hpp"
@@ -20,17 +18,11 @@
 #include <cstddef>
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <numbers>
-#include <optional>
-#include <string>
 #include <system_error>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::program {
@@ -63,19 +55,6 @@ struct Options {
     unsigned threads = 1;
     std::string out;
 };
-
-/// CLI::Range accepts NaN.
-CLI::Validator number_in(double low, double high) {
-    return CLI::Range(low, high) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case);
-}
-
-std::optional<Mission> mission_of(const std::string& name) {
-    for (const Mission mission :
-         {Mission::trackdrive, Mission::autocross, Mission::acceleration, Mission::skidpad}) {
-        if (to_string(mission) == name) return mission;
-    }
-    return std::nullopt;
-}
 
 bool has_known_course(std::optional<Mission> mission) {
     return mission == Mission::acceleration || mission == Mission::skidpad;
@@ -266,7 +245,8 @@ void run_races(Options& options) {
     options.race.latency_s = options.latency_ms / 1000.0;
     options.race.start_error_rad = options.start_deg * kDegree_rad;
     options.race.drift_rad = options.drift_deg * kDegree_rad;
-    const std::optional<Mission> mission = mission_of(options.mission);
+    std::optional<Mission> mission;
+    if (!options.mission.empty()) mission = mission_named(options.mission);
     options.race.with_stop = mission.has_value();
     const bool is_trackdrive = mission == Mission::trackdrive;
     options.race.laps = options.laps.value_or(is_trackdrive ? kTrackdriveLaps : 1);
@@ -332,11 +312,10 @@ void add_race_command(CLI::App& program) {
         "names of `conelane methods`; exec:NAME=COMMAND; truth: the true centre line; none: no path");
     command.add_flag("--planner", options->planner, "each detector drives through a planner");
     command.add_flag("--both", options->both, "each detector drives alone and through a planner");
-    command
-        .add_option("--mission", options->mission,
+    add_word_option(command, "--mission", options->mission,
+                    {"acceleration", "skidpad", "autocross", "trackdrive"},
                     "from a standstill to a stop: acceleration, skidpad, autocross or trackdrive; without it "
-                    "the car rolls and the last lap ends the race")
-        ->check(CLI::IsMember({"acceleration", "skidpad", "autocross", "trackdrive"}));
+                    "the car rolls and the last lap ends the race");
     command.add_flag("--vary", options->vary,
                      "acceleration and skidpad: each seed draws another course within the rules");
     command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
@@ -345,44 +324,27 @@ void add_race_command(CLI::App& program) {
         ->capture_default_str();
     command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
         ->check(CLI::Range(1, 1000));
-    command.add_option("--speed", options->race.speed_mps, "speed of the car [m/s]")
-        ->check(number_in(0.5, 40.0))
-        ->capture_default_str();
+    add_number_option(command, "--speed", options->race.speed_mps, 0.5, 40.0, "speed of the car [m/s]");
     command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
-    command.add_option("--latency-ms", options->latency_ms, "simulated time from a frame to its path")
-        ->check(number_in(0.0, 1000.0))
-        ->capture_default_str();
+    add_number_option(command, "--latency-ms", options->latency_ms, 0.0, 1000.0,
+                      "simulated time from a frame to its path");
     command.add_flag("--colors", options->race.sight.with_color, "cones have their colour");
-    command.add_option("--ids", options->ids, "tracked: points keep their id; none: no point has one")
-        ->check(CLI::IsMember({"tracked", "none"}))
-        ->capture_default_str();
-    command
-        .add_option("--fault", options->fault,
+    add_word_option(command, "--ids", options->ids, {"tracked", "none"},
+                    "tracked: points keep their id; none: no point has one");
+    add_word_option(command, "--fault", options->fault,
+                    {"none", "jump", "late", "twice", "order", "blackout", "ids"},
                     "jump: the map moves by 0.5 m; late, twice, order: frames come late, twice or out of "
-                    "order; blackout: 1 s without cones; ids: all cones change their id")
-        ->check(CLI::IsMember({"none", "jump", "late", "twice", "order", "blackout", "ids"}))
-        ->capture_default_str();
-    command
-        .add_option("--start-error", options->race.start_error_m,
-                    "largest distance of the car from the start [m]")
-        ->check(number_in(0.0, 3.0))
-        ->capture_default_str();
-    command
-        .add_option("--start-error-deg", options->start_deg,
-                    "largest angle between the car and the start's direction [degrees]")
-        ->check(number_in(0.0, 45.0))
-        ->capture_default_str();
-    command.add_option("--drift", options->race.drift_m, "how far the map moves in a lap [m]")
-        ->check(number_in(0.0, 10.0))
-        ->capture_default_str();
-    command.add_option("--drift-deg", options->drift_deg, "how far the map turns in a lap [degrees]")
-        ->check(number_in(0.0, 45.0))
-        ->capture_default_str();
-    command
-        .add_option("--replay", options->replay,
-                    "races in replay.jsonl: unfinished (and the first one), all or none")
-        ->check(CLI::IsMember({"unfinished", "all", "none"}))
-        ->capture_default_str();
+                    "order; blackout: 1 s without cones; ids: all cones change their id");
+    add_number_option(command, "--start-error", options->race.start_error_m, 0.0, 3.0,
+                      "largest distance of the car from the start [m]");
+    add_number_option(command, "--start-error-deg", options->start_deg, 0.0, 45.0,
+                      "largest angle between the car and the start's direction [degrees]");
+    add_number_option(command, "--drift", options->race.drift_m, 0.0, 10.0,
+                      "how far the map moves in a lap [m]");
+    add_number_option(command, "--drift-deg", options->drift_deg, 0.0, 45.0,
+                      "how far the map turns in a lap [degrees]");
+    add_word_option(command, "--replay", options->replay, {"unfinished", "all", "none"},
+                    "races in replay.jsonl: unfinished (and the first one), all or none");
     add_threads_option(command, options->threads, "number of threads; the results do not depend on it");
     command.add_option("--out", options->out, "folder for race.json, table.txt, replay.jsonl and times.txt")
         ->required();

@@ -2,16 +2,7 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/progress/progress.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
-
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {

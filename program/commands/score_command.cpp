@@ -8,20 +8,15 @@
 #include "experiments/comparison/results.hpp"
 #include "experiments/comparison/summary.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <span>
-#include <string>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::program {

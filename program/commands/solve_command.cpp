@@ -7,7 +7,6 @@
 #include "evaluation/outside/outside_solver.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/milp/milp_solver.hpp"
@@ -15,13 +14,8 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace conelane::program {
@@ -111,8 +105,7 @@ void solve_all(const Options& options) {
     std::size_t started = 0;
     Progress progress(name, scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
-        const Scene scene =
-            options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
+        const Scene scene = cones_asked_for(annotated.scene, options.nearest);
         std::optional<LaneGraph> start;
         if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
         if (const auto lane = lanes.find(scene.id); lane != lanes.end() && !lane->second.closed)
@@ -167,11 +160,8 @@ void add_solve_command(CLI::App& program) {
         "--all-rows", options->all_rows,
         "a solver of programs gets one with all rows (no cycles and the pairing as a flow) and is asked "
         "once; without it, rows that its point violates are added and it is asked again");
-    command
-        .add_option("--formulation", options->formulation,
-                    "the program, for solvers that use one: tight, or paper as printed")
-        ->check(CLI::IsMember({"tight", "paper"}))
-        ->capture_default_str();
+    add_word_option(command, "--formulation", options->formulation, {"tight", "paper"},
+                    "the program, for solvers that use one: tight, or paper as printed");
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     add_output_option(command, "--out", options->out, "*.solutions.jsonl")->required();
     add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");

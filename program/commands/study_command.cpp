@@ -1,16 +1,9 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/studies/study.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {

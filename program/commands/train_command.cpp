@@ -4,7 +4,6 @@
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/weights/weight_files.hpp"
 #include "learning/training/front_training.hpp"
@@ -15,10 +14,6 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <memory>
-#include <string>
-
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {

@@ -4,10 +4,8 @@
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_set.hpp"
-#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "learning/tuning/detector_tuning.hpp"
 #include "learning/tuning/evaluation.hpp"
 #include "learning/tuning/tuner.hpp"
@@ -18,11 +16,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace conelane::program {
@@ -171,15 +165,9 @@ void add_tune_command(CLI::App& program) {
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     add_field_options(
-        command, {{"--most-nodes",
-                   "",
-                   &options->evaluation.max_nodes,
-                   {1.0, 1e9},
+        command, {{"--most-nodes", "", &options->evaluation.max_nodes, OptionRange{1.0, 1e9},
                    "largest number of nodes of a scene's search; a search that takes more counts as wrong"},
-                  {"--evaluations",
-                   "",
-                   &options->tuner.evaluations,
-                   {0.0, 1e6},
+                  {"--evaluations", "", &options->tuner.evaluations, OptionRange{0.0, 1e6},
                    "largest number of parameter sets that the search evaluates"}});
     command.add_option(
         "--start", options->start,

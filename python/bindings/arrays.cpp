@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <tuple>
-#include <type_traits>
 #include <unordered_map>
 
 namespace conelane::python {

@@ -21,6 +21,7 @@
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 /// The module conelane._core. Each function adds its part. A docstring begins with the Python signature, from
 /// which the arguments are read, because pybind11's own one would have C++ types. That of an attribute begins

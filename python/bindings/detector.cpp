@@ -1,4 +1,3 @@
-#include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
 #include "detectors/recipe.hpp"
@@ -7,14 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
 #include <utility>
 #include <variant>
-
-#include <pybind11/stl.h>
 
 namespace conelane::python {
 namespace {
@@ -367,12 +361,8 @@ void add_planner(py::module_& module) {
                  double max_age_s, double step_m, double smoothing_m, double max_gap_m,
                  double default_width_m, const py::kwargs& given) {
             return std::make_unique<PlannerObject>(
-                PlannerOptions{mission_named(mission),
-                               detector,
-                               detector_options(detector, given),
-                               laps,
-                               {step_m, smoothing_m, max_gap_m, default_width_m},
-                               max_age_s});
+                PlannerOptions{mission_named(mission), detector, detector_options(detector, given), laps,
+                               DrivableOptions{step_m, smoothing_m, max_gap_m, default_width_m}, max_age_s});
         })
         .method(kUpdate, update)
         .method(kCourse, course)

@@ -1,5 +1,4 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
@@ -9,14 +8,10 @@
 #include "python/bindings/bindings.hpp"
 
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
-#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 // Files, courses and scores: what a build of the core alone leaves out.

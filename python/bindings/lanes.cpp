@@ -1,13 +1,7 @@
-#include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
-
-#include <pybind11/stl.h>
 
 namespace conelane::python {
 namespace {

@@ -5,8 +5,6 @@
 
 #include <cstring>
 #include <exception>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include <pybind11/eval.h>

@@ -1,17 +1,10 @@
 #include "conelane/core_solvers.hpp"
 #include "conelane/invalid_input.hpp"
-#include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
-
-#include <pybind11/stl.h>
 
 namespace conelane::python {
 namespace {

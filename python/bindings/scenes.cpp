@@ -1,11 +1,6 @@
-#include "conelane/invalid_input.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <optional>
-#include <string>
 #include <utility>
-
-#include <pybind11/stl.h>
 
 namespace conelane::python {
 namespace {

@@ -22,16 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import Color
 
-__all__ = [
-    "Cones",
-    "Fields",
-    "from_eufs",
-    "from_fs_track",
-    "from_pacsim",
-    "to_eufs",
-    "to_fs_track",
-    "to_pacsim",
-]
+__all__ = ["Cones", "Fields", "from_eufs", "from_fs_track", "from_pacsim", "to_eufs", "to_fs_track", "to_pacsim"]
 
 FloatArray = NDArray[np.float64]
 

@@ -2,7 +2,7 @@
 // car. The figures of docs/limits.md: `detectors_tests --gtest_filter='*FalseConesAlone*'` prints them.
 
 #include "conelane/detectors.hpp"
-#include "evaluation/world/scene_draws.hpp"
+#include "evaluation/world/course.hpp"
 #include "tests/support/testing.hpp"
 
 #include <boost/random/uniform_real_distribution.hpp>

@@ -5,7 +5,6 @@
 #include "conelane/lane_detector.hpp"
 #include "conelane/scene.hpp"
 
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "evaluation/outside/outside_solver.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/outside/solver_input.hpp"
+#include "model/connecting_flow.hpp"
 #include "model/deadline.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"

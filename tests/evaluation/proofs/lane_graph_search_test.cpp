@@ -5,7 +5,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/proofs/claim_verdict.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "solvers/core_entries.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/cones_at.hpp"

@@ -1,6 +1,5 @@
-#include "evaluation/scoring/driven_path.hpp"
-
 #include "conelane/invalid_input.hpp"
+#include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "tests/support/testing.hpp"
 

@@ -4,7 +4,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "evaluation/scoring/wilcoxon.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {

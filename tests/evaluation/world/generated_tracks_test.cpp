@@ -1,8 +1,6 @@
 #include "evaluation/world/generated_tracks.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/world/rounded_path.hpp"
-#include "evaluation/world/track_layouts.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/testing.hpp"
 

@@ -3,7 +3,6 @@
 #include "graph_search/front/front_features.hpp"
 
 #include "graph_search/front/front_cost.hpp"
-#include "graph_search/front/front_judge_features.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/testing.hpp"

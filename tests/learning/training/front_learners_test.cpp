@@ -1,7 +1,7 @@
 // The derivatives by which the cost and the judge of `front` learn.
 
 #include "evaluation/world/generated_tracks.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 #include "learning/training/front_gradient.hpp"
 #include "learning/training/front_judge_learner.hpp"
 #include "learning/training/front_learner.hpp"
