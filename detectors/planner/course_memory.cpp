@@ -18,6 +18,12 @@ constexpr double kSmoothing_m = 1.0;  ///< of the closed course, see DrivableOpt
 constexpr double kPassed_m = 8.0;
 constexpr double kSeamFade_m = 15.0;  ///< over which the seam between first and last lap is spread
 
+constexpr double kNotedBehind_m = 5.0;     ///< the car: farther back, cones are those of the lap before
+constexpr double kComparedAhead_m = 35.0;  ///< of the course, with the cones seen
+constexpr double kBeside_m = 1.0;          ///< along the lane: a cone is beside a recorded point
+constexpr double kSameNoted_m = 0.3;
+constexpr double kSameStranger_m = 0.5;
+
 /// Sets the arc lengths of a closed lane, from chords, and its length.
 void measure(DrivableLane& ring) {
     ring.closed = true;
@@ -91,7 +97,12 @@ DrivableLane evenly_spaced(const DrivableLane& ring, double step_m) {
 
 }  // namespace
 
-void CourseMemory::record(const DrivableLane& lane) {
+void CourseMemory::move_along(const RigidShift& shift) {
+    move(points_, shift);
+    for (NotedCone& cone : noted_) cone.place = shift(cone.place);
+}
+
+void CourseMemory::record(const DrivableLane& lane, const ConeMemory& cones) {
     if (lane.points.empty()) return;
     const DrivablePoint& here = lane.points.front();
     if (!points_.empty()) {
@@ -100,6 +111,7 @@ void CourseMemory::record(const DrivableLane& lane) {
         const double gap_m = (here.position - last.position).norm();
         if (gap_m > kMaxGap_m) {
             points_.clear();
+            noted_.clear();
             closed_ = false;
         } else if (on_m < settings_.step_m) {
             return;
@@ -114,10 +126,12 @@ void CourseMemory::record(const DrivableLane& lane) {
                 point.width_left_m = std::lerp(from.width_left_m, here.width_left_m, share);
                 point.width_right_m = std::lerp(from.width_right_m, here.width_right_m, share);
                 append(point);
+                note_cones(points_.back(), cones);
             }
         }
     }
     append(here);
+    note_cones(points_.back(), cones);
     if (closed_) {
         drop_passed(here);
     } else {
@@ -158,6 +172,8 @@ void CourseMemory::close(const DrivableLane& lane) {
         if (!same) continue;
         points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(i));
         closed_ = true;
+        fit_ = 0;
+        laid_ = {};
         drop_passed(here);
         return;
     }
@@ -174,6 +190,112 @@ void CourseMemory::drop_passed(const DrivablePoint& at) {
             passed = i + 1;
     }
     points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(passed));
+    const double first_m = points_.front().s_m - kNotedBehind_m;
+    std::erase_if(noted_, [&](const NotedCone& cone) { return cone.s_m < first_m; });
+}
+
+/// All cones in the lane and a little beside it, so that a later one is known to be new.
+void CourseMemory::note_cones(const DrivablePoint& here, const ConeMemory& cones) {
+    const Pose pose = pose_of(here);
+    for (const ConeMemory::RememberedCone& cone : cones.cones()) {
+        if ((cone.position - here.position).squaredNorm() > kPassed_m * kPassed_m) continue;
+        const double left_m = pose.left_m(cone.position);
+        const double outside_m = std::abs(left_m) - (left_m > 0.0 ? here.width_left_m : here.width_right_m);
+        if (std::abs(pose.ahead_m(cone.position)) > kBeside_m || outside_m > settings_.beside_m) continue;
+        if (cone.sightings < settings_.min_sightings) continue;
+        const bool is_noted = std::any_of(noted_.rbegin(), noted_.rend(), [&](const NotedCone& noted) {
+            return noted.s_m > here.s_m - 3.0 * kBeside_m &&
+                   (noted.place - cone.position).norm() < kSameNoted_m;
+        });
+        if (is_noted) continue;
+        noted_.push_back({cone.position, here.s_m, std::abs(outside_m) <= settings_.boundary_m});
+    }
+}
+
+void CourseMemory::observe(const Frame& frame, const ConeMemory& cones) {
+    matched_ = 0;
+    if (!closed_) return;
+    const double gate_m = fit_ > 0 ? settings_.same_cone_m : settings_.settling_cone_m;
+    std::vector<PlacePair> pairs;
+    int expected = 0;
+    for (NotedCone& noted : noted_) {
+        if (noted.s_m > points_.front().s_m + kComparedAhead_m) break;
+        const Point place = laid_(noted.place);
+        const bool is_expected = cones.is_in_sure_view(place);
+        const Cone* nearest = nullptr;
+        double nearest_m = gate_m;
+        for (const Cone& cone : frame.cones) {
+            const double distance_m = (cone.position - place).norm();
+            if (distance_m > nearest_m) continue;
+            nearest_m = distance_m;
+            nearest = &cone;
+        }
+        if (is_expected) ++expected;
+        if (nearest != nullptr) {
+            pairs.push_back({noted.place, nearest->position});
+            noted.missed = 0;
+            if (is_expected) ++matched_;
+        } else if (is_expected && fit_ > 0) {
+            ++noted.missed;
+        }
+    }
+    if (expected >= settings_.min_expected) {
+        fit_ = std::clamp(fit_ + (2 * matched_ > expected ? 1 : -1), -settings_.fitting_frames,
+                          settings_.fitting_frames);
+    }
+    lay(pairs, frame.pose.position);
+    find_strangers(frame);
+}
+
+/// Seen in three frames, never more than five frames apart: false cones of single frames are no strangers.
+void CourseMemory::find_strangers(const Frame& frame) {
+    for (Stranger& stranger : strangers_) ++stranger.unseen;
+    for (const Cone& cone : frame.cones) {
+        const bool was_there = std::ranges::any_of(noted_, [&](const NotedCone& noted) {
+            return (laid_(noted.place) - cone.position).norm() <= settings_.same_cone_m;
+        });
+        if (was_there) continue;
+        const auto known = std::ranges::find_if(strangers_, [&](const Stranger& stranger) {
+            return (stranger.place - cone.position).norm() <= kSameStranger_m;
+        });
+        if (known == strangers_.end()) {
+            strangers_.push_back({cone.position});
+        } else {
+            *known = {cone.position, known->frames + 1};
+        }
+    }
+    std::erase_if(strangers_,
+                  [&](const Stranger& stranger) { return stranger.unseen > settings_.unseen_frames; });
+}
+
+void CourseMemory::lay(const std::vector<PlacePair>& pairs, const Point& place) {
+    ShiftSettings shared;
+    shared.min_shift_m = 0.0;
+    const std::optional<RigidShift> shift = common_shift(pairs, shared);
+    if (!shift) return;
+    laid_ = laid_.towards(*shift, fit_ > 0 ? settings_.kept_gain : settings_.settling_gain, place);
+}
+
+LaneTrust CourseMemory::trust(const DrivableLane& lane) const {
+    if (lane.points.empty()) return {0.0, "the course is not ahead of the car"};
+    if (fit_ <= 0) return {0.0, "the cones do not fit the course"};
+    LaneTrust trust{lane.length_m, ""};
+    const auto end_before = [&](double at_m, std::string_view reason) {
+        if (at_m - settings_.before_m >= trust.length_m) return;
+        trust = {std::max(0.0, at_m - settings_.before_m), reason};
+    };
+    for (const NotedCone& noted : noted_) {
+        if (noted.s_m > points_.front().s_m + kComparedAhead_m) break;
+        if (noted.is_boundary && noted.missed >= settings_.missed_frames)
+            end_before(arc_length_beside(lane, laid_(noted.place), settings_.boundary_m + kBeside_m),
+                       "a cone of the boundary is gone");
+    }
+    for (const Stranger& stranger : strangers_) {
+        if (stranger.frames >= settings_.stranger_frames)
+            end_before(arc_length_beside(lane, stranger.place, -settings_.in_lane_m),
+                       "a cone stands in the lane");
+    }
+    return trust;
 }
 
 std::optional<DrivableLane> CourseMemory::course() const {
@@ -191,6 +313,16 @@ DrivableLane CourseMemory::ahead(const Pose& pose, double length_m) const {
         lane.points.back().s_m -= begin_m;
     }
     lane.length_m = lane.points.back().s_m;
+    move(lane.points, laid_);
+    // The first point may lie a little ahead of the car, where the record has just been cut.
+    DrivablePoint begin = lane.points.front();
+    const double before_m = -pose_of(begin).ahead_m(pose.position);
+    if (before_m > 0.0 && before_m < kPassed_m) {
+        for (DrivablePoint& point : lane.points) point.s_m += before_m;
+        begin.position -= before_m * pose_of(begin).heading();
+        lane.points.insert(lane.points.begin(), begin);
+        lane.length_m += before_m;
+    }
     const auto foot = foot_on(lane, pose, 0.0, 2.0 * kPassed_m);
     if (!foot || foot->offset_m > settings_.line_half_width_m) return {};
     return stretch(lane, foot->s_m, lane.length_m, step_m_);

@@ -1,5 +1,6 @@
 #include "detectors/planner/lane_stretch.hpp"
 
+#include "detectors/drivable/smoothing_spline.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
@@ -29,6 +30,9 @@ constexpr double kJoinBend_m = 2.0;  ///< before its beginning the line turns fr
 constexpr double kExtendOffset_m = 0.5;
 constexpr double kExtendTurn_rad = 0.35;
 constexpr double kFine_m = 0.1;
+constexpr double kClothoid_m = 2.0;    ///< before and behind a point, for its curvature
+constexpr double kFarAside_m = 6.0;    ///< nothing farther is beside a point of a lane
+constexpr double kSharpest_1pm = 0.5;  ///< curvature that smoothing keeps
 constexpr double kSteadyShare = 0.5;   ///< of the way to the lane driven so far
 constexpr double kSteadyFull_m = 0.5;  ///< apart: up to here all of the share, at kSteadyNone_m nothing
 constexpr double kSteadyNone_m = 0.9;
@@ -89,6 +93,30 @@ void derive(std::vector<DrivablePoint>& points, std::size_t from, std::size_t to
         points[i].heading_rad = turning_angle({1.0, 0.0}, c - a);
         const double product_m3 = (b - a).norm() * (c - b).norm() * (c - a).norm();
         points[i].curvature_1pm = product_m3 > 1e-9 ? 2.0 * cross(b - a, c - b) / product_m3 : 0.0;
+    }
+}
+
+/// The slope of the headings within kClothoid_m of each point, by least squares: the mean curvature there of
+/// the clothoid that fits best.
+void derive_curvatures(std::vector<DrivablePoint>& points) {
+    std::vector<double> turned_rad(points.size(), 0.0);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        turned_rad[i] = turned_rad[i - 1] + turn_rad(points[i - 1].heading_rad, points[i].heading_rad);
+    }
+    std::size_t from = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        while (points[from].s_m < points[i].s_m - kClothoid_m) ++from;
+        double n = 0.0, s = 0.0, ss = 0.0, t = 0.0, st = 0.0;
+        for (std::size_t k = from; k < points.size() && points[k].s_m <= points[i].s_m + kClothoid_m; ++k) {
+            const double s_m = points[k].s_m - points[i].s_m;
+            n += 1.0;
+            s += s_m;
+            ss += s_m * s_m;
+            t += turned_rad[k];
+            st += s_m * turned_rad[k];
+        }
+        const double spread = n * ss - s * s;
+        points[i].curvature_1pm = spread > 1e-9 ? (n * st - s * t) / spread : 0.0;
     }
 }
 
@@ -286,6 +314,48 @@ DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, doub
     }
     if (points.size() == lane.points.size()) return lane;
     return measured(std::move(points), step_m, lane);
+}
+
+double arc_length_beside(const DrivableLane& lane, const Point& place, double outside_m) {
+    double step_m = 0.0;
+    for (std::size_t i = 0; i < lane.points.size(); ++i) {
+        const DrivablePoint& point = lane.points[i];
+        if (i > 0) step_m = point.s_m - lane.points[i - 1].s_m;
+        if ((place - point.position).squaredNorm() > kFarAside_m * kFarAside_m) continue;
+        const Pose pose = pose_of(point);
+        const double left_m = pose.left_m(place);
+        if (std::abs(pose.ahead_m(place)) > std::max(step_m, 0.5)) continue;
+        const double width_m = left_m > 0.0 ? point.width_left_m : point.width_right_m;
+        if (std::abs(left_m) <= width_m + outside_m) return point.s_m;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+DrivableLane faired(const DrivableLane& lane, double smoothing_m) {
+    if (lane.points.size() < 5) return lane;
+    const std::size_t count = lane.points.size() - (lane.points.size() % 2 == 0 ? 1 : 0);  // odd, as it asks
+    const double spacing_m = lane.points[1].s_m - lane.points[0].s_m;
+    std::vector<Point> places;
+    for (std::size_t i = 0; i < count; ++i) places.push_back(lane.points[i].position);
+    const std::vector<double> weights(count, 1.0);
+    SmoothingSpline spline(places, weights, spacing_m, smoothing_m, false);
+    for (int round = 0; round < 2; ++round) {
+        spline = SmoothingSpline(places, weights, spacing_m, smoothing_m, false,
+                                 spline.turning_1pm(kSharpest_1pm));
+    }
+    std::vector<DrivablePoint> points(lane.points.begin(),
+                                      lane.points.begin() + static_cast<std::ptrdiff_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        const SmoothingSpline::Jet jet = spline.at(spacing_m * static_cast<double>(i));
+        const double left_m = pose_of(points[i]).left_m(jet.position);
+        points[i].position = jet.position;
+        points[i].heading_rad = turning_angle({1.0, 0.0}, jet.first);
+        points[i].width_left_m -= left_m;
+        points[i].width_right_m += left_m;
+    }
+    DrivableLane smooth = measured(std::move(points), spacing_m, lane);
+    derive_curvatures(smooth.points);
+    return smooth;
 }
 
 DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, double step_m) {

@@ -39,6 +39,14 @@ struct LaneFoot {
 [[nodiscard]] double common_m(const DrivableLane& lane, const DrivableLane& other, double apart_m,
                               double window_m);
 
+/// Arc length of the first place of a lane beside which a point is, no more than `outside_m` outside the
+/// boundaries, or inside them by at least -outside_m; infinite if there is none.
+[[nodiscard]] double arc_length_beside(const DrivableLane& lane, const Point& place, double outside_m);
+
+/// The lane along a smoothing spline near its points. The curvature is that of a clothoid through about 4 m
+/// of it, so it changes no faster than a lane can bend. Its length changes a little.
+[[nodiscard]] DrivableLane faired(const DrivableLane& lane, double smoothing_m);
+
 /// The lane extended back to the car if it begins ahead: along `before`, the lane driven so far, if that
 /// leads to it, else in one bend from the car. Nothing if it is more than 12 m away, or, for a bend, too far
 /// aside: more than 2.5 m and three tenths of the distance ahead, if it does not turn to that side.

@@ -44,6 +44,7 @@ struct LaneChoiceSettings {
     double on_course_m = 2.0;         ///< ahead of the car, where it is on the lap before or off it
     double on_course_offset_m = 0.6;  ///< and how far aside it may be there
     double course_ahead_m = 20.0;     ///< length of the lap before that is compared
+    double known_ahead_m = 50.0;      ///< length of the lap before that is driven by
     double min_left_m = 3.0;          ///< a lane with a shorter rest does not resist a new one
     double max_offset_m = 2.5;        ///< distance from car to path: farther away, the car is off it
 };
@@ -60,6 +61,20 @@ struct CourseSettings {
     double line_away_m = 8.0;        ///< distance from the line before it counts again
     double gate_within_m = 20.0;  ///< distance from the first pose: farther orange cones are not a start line
     double stop_m = 30.0;         ///< length to stop after the last line, by the rules
+    double beside_m = 0.8;        ///< cones up to so far outside the lane are noted
+    double boundary_m = 0.6;      ///< a cone so near to the boundary is of it
+    double same_cone_m = 0.75;    ///< a noted cone is a seen one within this distance
+    double settling_cone_m = 1.5;  ///< the same while the course is not yet laid onto the cones
+    double settling_gain = 0.5;    ///< of the movement that one frame shows, then kept_gain
+    double kept_gain = 0.15;
+    int min_expected = 4;     ///< fewer noted cones in view say nothing of the course
+    int fitting_frames = 3;   ///< frames until the course is trusted, or not trusted any more
+    int missed_frames = 6;    ///< a boundary cone that so many frames in a row should show is gone
+    int stranger_frames = 3;  ///< frames that show a cone that was not there
+    int unseen_frames = 5;    ///< and how many may lie between two of them
+    int min_sightings = 3;    ///< of a cone that is noted
+    double in_lane_m = 0.6;   ///< a cone so far inside the boundaries is in the way
+    double before_m = 1.0;    ///< the trust ends so far before what contradicts the course
 };
 
 }  // namespace conelane

@@ -10,7 +10,7 @@ namespace conelane {
 
 std::span<const Condition> named_conditions() {
     constexpr double kDegree_rad = std::numbers::pi / 180.0;
-    static const std::array<Condition, 3> conditions{{
+    static const std::array<Condition, 4> conditions{{
         {.name = "paper"},
         {.name = "car",
          .noise_sigma_m = 0.1,
@@ -23,6 +23,12 @@ std::span<const Condition> named_conditions() {
          .pose_noise_lateral_m = 0.5,
          .pose_noise_yaw_rad = 8.0 * kDegree_rad,
          .miss_rate = 0.1,
+         .persistent = true},
+        {.name = "slam",
+         .noise_sigma_m = 0.1,
+         .pose_noise_lateral_m = 0.1,
+         .pose_noise_yaw_rad = 1.0 * kDegree_rad,
+         .miss_rate = 0.05,
          .persistent = true},
     }};
     return conditions;

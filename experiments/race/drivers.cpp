@@ -16,10 +16,11 @@ namespace {
 /// A path is due in 100 ms. The limit is longer, so that the wall clock does not influence answers.
 constexpr double kNoLimit_ms = 10'000.0;
 
-std::vector<Point> points_of(const DrivableLane& lane) {
-    std::vector<Point> path;
-    for (const DrivablePoint& point : lane.points) path.push_back(point.position);
-    return path;
+void follow(const DrivableLane& lane, Drive& drive) {
+    for (const DrivablePoint& point : lane.points) {
+        drive.path.push_back(point.position);
+        drive.curvature_1pm.push_back(point.curvature_1pm);
+    }
 }
 
 /// A detector needs distinct ids.
@@ -36,7 +37,7 @@ Drive drive_by(const LaneAnswer& answer, const Scene& scene) {
     Drive drive;
     if (answer.status != LaneStatus::found) return drive;
     const DrivableLane lane = drivable(answer, scene);
-    drive.path = points_of(lane);
+    follow(lane, drive);
     if (lane.trusted_m) drive.safe_m = *lane.trusted_m;
     return drive;
 }
@@ -92,7 +93,7 @@ Driver planner_driver(const std::string& detector, const DetectorOptions& detect
         Drive drive;
         try {
             const Plan plan = planner->update(frame, {.time_limit_ms = kNoLimit_ms});
-            drive.path = points_of(plan.lane);
+            follow(plan.lane, drive);
             drive.stop = plan.stop;
             drive.is_flagged = plan.state != PlanState::following;
             drive.age_s = plan.age_s;
@@ -150,7 +151,7 @@ std::vector<Racer> racers(const std::vector<std::string>& texts, WithPlanner wit
 Driver make_driver(const Racer& racer, const RaceCourse& course, const RaceOptions& options,
                    const std::optional<WeightsBytes>& weights) {
     if (!racer.method) {
-        if (racer.name == "truth") return truth_driver(course, options.laps);
+        if (racer.name == "truth") return truth_driver(course, options.laps, options.by_safe ? 60.0 : 20.0);
         return [](const Frame& /*frame*/) { return Drive{}; };
     }
     if (racer.method->programs) return outside_driver(racer.method->programs);

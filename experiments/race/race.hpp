@@ -1,10 +1,12 @@
 #pragma once
 
 #include "conelane/planner.hpp"
+#include "conelane/speed_profile.hpp"
 #include "evaluation/world/condition.hpp"
 #include "experiments/race/course.hpp"
 #include "experiments/race/world.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -33,6 +35,9 @@ struct RaceOptions {
     SightOptions sight;
     int laps = 1;  ///< of a circuit
     double speed_mps = 6.0;
+    /// As fast as the path and its trusted length allow, instead of speed_mps; from a standstill.
+    bool by_safe = false;
+    VehicleLimits limits = {};
     double latency_s = 0.05;  ///< from a frame to its path; simulated, so that a race can be repeated
     /// True: it starts at rest and has to stop by itself. False: it rolls; the last lap ends the race.
     bool with_stop = false;
@@ -48,6 +53,7 @@ struct RaceOptions {
 /// The answer to a frame.
 struct Drive {
     std::vector<Point> path;  ///< from the car on, in the map frame; fewer than two points: none
+    std::vector<double> curvature_1pm = {};  ///< of the points of the path; empty: taken as straight
     bool stop = false;
     /// Whether the path is said to be an earlier one, or absent.
     bool is_flagged = false;
@@ -82,6 +88,19 @@ enum class RaceEnd {
 };
 [[nodiscard]] std::string_view to_string(RaceEnd end);
 
+/// The first lap of a race, or the others.
+struct LapFigures {
+    int laps = 0;             ///< that were completed
+    double time_s = 0.0;      ///< of those
+    int frames = 0;           ///< with a path
+    int short_frames = 0;     ///< trusted for less than 3 m, also those without a path
+    int wrong_trusted = 0;    ///< frames whose path leaves the lane where it is trusted
+    int right_untrusted = 0;  ///< trusted for less than 3 m, and right for the next 10 m
+    /// Of the path 5 m ahead, from the frame before; 95 of 100 are smaller.
+    std::optional<double> sideways_p95_m = {};
+    double max_curvature_1pm = 0.0;  ///< of the first 10 m of a path
+};
+
 struct RaceResult {
     RaceEnd end = RaceEnd::too_long;
     int finished_laps = 0;
@@ -100,6 +119,7 @@ struct RaceResult {
     std::optional<double> unsteady_share;  ///< of successive paths: more than 0.3 m apart within 10 m
     std::vector<std::string_view> phases;  ///< as reported, in order
     int laps_told = 0;
+    std::array<LapFigures, 2> by_lap;  ///< the first lap, and later ones
 
     std::vector<double> answer_ms;  ///< real time of each answer; without influence on the race
     std::vector<ReplayFrame> replay;
@@ -108,9 +128,12 @@ struct RaceResult {
     [[nodiscard]] bool finished() const { return end == RaceEnd::finished; }
 };
 
-/// A driver that returns the next 20 m of the true centre line, from the pose that the car believes, and
+/// Of the true centre line at the point with this number [1/m].
+[[nodiscard]] double curvature_at(const RaceCourse& course, long number);
+
+/// A driver that returns the next `ahead_m` of the true centre line, from the pose that the car believes, and
 /// stops behind the last line. Its map frame is that of the world: no random map frame, drift or jumps.
-[[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps);
+[[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps, double ahead_m = 20.0);
 
 /// Drives a course by the answers of a driver. The result, without `answer_ms`, depends only on the arguments
 /// and the answers. Precondition: the course was made by a function of course.hpp.

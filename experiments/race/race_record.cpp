@@ -28,17 +28,22 @@ Row row_of(const Heat& heat) {
 }
 
 /// The races of each key, in the order in which keys first occur.
-template <typename Of>
-auto grouped(std::span<const Heat> heats, const Of& of) {
-    using Results = std::vector<const RaceResult*>;
+template <typename Of, typename Taken>
+auto grouped(std::span<const Heat> heats, const Of& of, const Taken& taken) {
+    using Results = std::vector<decltype(taken(heats.front()))>;
     std::vector<std::pair<decltype(of(heats.front())), Results>> groups;
     for (const Heat& heat : heats) {
         const auto key = of(heat);
         auto group = std::ranges::find_if(groups, [&](const auto& other) { return other.first == key; });
         if (group == groups.end()) group = groups.insert(group, {key, {}});
-        group->second.push_back(&heat.result);
+        group->second.push_back(taken(heat));
     }
     return groups;
+}
+
+template <typename Of>
+auto grouped(std::span<const Heat> heats, const Of& of) {
+    return grouped(heats, of, [](const Heat& heat) { return &heat.result; });
 }
 
 /// The numbers of the races that have one.
@@ -151,6 +156,46 @@ std::string race_table(std::span<const Heat> heats, int laps) {
     return table.text() + (lost.empty() ? "" : "\n" + lost);
 }
 
+std::string speed_table(std::span<const Heat> heats) {
+    TextTable table({{"method", true},
+                     {"fp"},
+                     {"laps", true},
+                     {"time ratio"},
+                     {"safe < 3 m %"},
+                     {"right of these %"},
+                     {"trusted, wrong %"},
+                     {"sideways p95 m"},
+                     {"curvature 1/m"}});
+    for (const auto& [row, races] : grouped(heats, row_of, [](const Heat& heat) { return &heat; })) {
+        for (const std::size_t later : {0U, 1U}) {
+            Sample ratios;
+            Sample sideways_m;
+            Sample curvatures_1pm;
+            std::size_t frames = 0;
+            std::size_t in_short = 0;
+            std::size_t right = 0;
+            std::size_t wrong = 0;
+            for (const Heat* heat : races) {
+                const LapFigures& lap = heat->result.by_lap[later];
+                if (lap.frames == 0) continue;
+                if (lap.laps > 0) ratios.add(lap.time_s / lap.laps / heat->known_lap_s.value()[later]);
+                sideways_m.add(lap.sideways_p95_m);
+                curvatures_1pm.add(lap.max_curvature_1pm);
+                frames += static_cast<std::size_t>(lap.frames);
+                in_short += static_cast<std::size_t>(lap.short_frames);
+                right += static_cast<std::size_t>(lap.right_untrusted);
+                wrong += static_cast<std::size_t>(lap.wrong_trusted);
+            }
+            if (frames == 0) continue;
+            table.add({row.first, fmt::format("{}", row.second), later > 0 ? "later" : "first",
+                       fixed(ratios.mean(), 3), percent(share(in_short, frames), 2),
+                       percent(share(right, frames), 2), percent(share(wrong, frames), 2),
+                       fixed(sideways_m.mean(), 3), fixed(curvatures_1pm.median(), 2)});
+        }
+    }
+    return table.text();
+}
+
 std::string answer_time_table(std::span<const Heat> heats) {
     TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
     for (const auto& [detector, races] : grouped(heats, [](const Heat& heat) { return heat.detector; })) {
@@ -184,6 +229,19 @@ Json heat_json(const Heat& heat) {
                  {"unsteady_share", maybe(r.unsteady_share)},
                  {"laps_told", r.laps_told}});
     if (!r.phases.empty()) json["phases"] = r.phases;
+    for (const std::size_t later : {0U, 1U}) {
+        if (!heat.known_lap_s) break;
+        const LapFigures& lap = r.by_lap[later];
+        json[later > 0 ? "later_laps" : "first_lap"] = {{"laps", lap.laps},
+                                                        {"time_s", lap.time_s},
+                                                        {"known_course_lap_s", (*heat.known_lap_s)[later]},
+                                                        {"frames", lap.frames},
+                                                        {"short_frames", lap.short_frames},
+                                                        {"right_untrusted", lap.right_untrusted},
+                                                        {"wrong_trusted", lap.wrong_trusted},
+                                                        {"sideways_p95_m", maybe(lap.sideways_p95_m)},
+                                                        {"max_curvature_1pm", lap.max_curvature_1pm}};
+    }
     return json;
 }
 

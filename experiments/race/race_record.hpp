@@ -2,6 +2,8 @@
 
 #include "experiments/race/race.hpp"
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,11 +19,17 @@ struct Heat {
     double false_positive_rate = 0.0;
     std::uint64_t seed = 0;
     RaceResult result = {};
+    /// By a car that knows the course, if the speed follows the trust: its first lap, and a later one.
+    std::optional<std::array<double, 2>> known_lap_s = {};
 };
 
 /// A row for each detector and share of false positives, in the order in which they first occur; then, for
 /// each course and detector, how far the unfinished races went.
 [[nodiscard]] std::string race_table(std::span<const Heat> heats, int laps);
+
+/// How fast and steady the laps were, a row for the first laps and one for the later ones of each detector
+/// and share of false positives; of races whose speed follows the trust.
+[[nodiscard]] std::string speed_table(std::span<const Heat> heats);
 
 /// Median and 99th percentile of the real time of an answer, by detector. They differ from run to run.
 [[nodiscard]] std::string answer_time_table(std::span<const Heat> heats);

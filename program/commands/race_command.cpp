@@ -16,6 +16,7 @@
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -57,6 +58,8 @@ struct Options {
     std::string replay = "unfinished";
     RaceOptions race;
     std::optional<int> laps;
+    double fov_deg = 180.0;
+    std::string speed = "6";
     double latency_ms = 50.0;
     double start_deg = 0.0;
     double drift_deg = 0.0;
@@ -86,6 +89,17 @@ struct WeightedCourse {
     RaceCourse course;
     std::shared_ptr<const WeightsBytes> weights = {};
 };
+
+/// The times of a first lap and of a later one by the same car, if it knows its pose and the course.
+std::array<double, 2> known_lap_s(const RaceCourse& course, const RaceOptions& as_raced) {
+    RaceOptions options;
+    options.by_safe = true;
+    options.limits = as_raced.limits;
+    options.latency_s = as_raced.latency_s;
+    options.laps = 2;
+    const RaceResult result = race(course, options, truth_driver(course, options.laps, 60.0));
+    return {result.by_lap[0].time_s, result.by_lap[1].time_s};
+}
 
 std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
     return std::make_shared<const WeightsBytes>(read_front_weights_bytes(file));
@@ -163,6 +177,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 heat.result = race(course, race_options,
                                    make_driver(*entries[i].racer, course, race_options,
                                                weights ? std::optional(*weights) : std::nullopt));
+                if (race_options.by_safe) heat.known_lap_s = known_lap_s(course, race_options);
                 // Keeps only the races that failed, and the first one, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();
@@ -201,7 +216,9 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"vary", options.vary},
             {"laps", options.race.laps},
             {"range_m", options.race.sight.range_m},
-            {"speed_mps", options.race.speed_mps},
+            {"fov_deg", options.fov_deg},
+            {"speed_mps", options.race.by_safe ? nlohmann::ordered_json("safe")
+                                               : nlohmann::ordered_json(options.race.speed_mps)},
             {"latency_ms", options.latency_ms},
             {"colors", options.race.sight.with_color},
             {"ids", options.ids},
@@ -231,7 +248,8 @@ class Outputs {
             if (heats[i].result.replay.empty()) continue;
             replay_.stream() << replay_json(heats[i], entries[i].course->course).dump() << "\n";
         }
-        const std::string table = race_table(heats, options.race.laps);
+        std::string table = race_table(heats, options.race.laps);
+        if (options.race.by_safe) table += "\n" + speed_table(heats);
         const std::string times = answer_time_table(heats);
         races_.stream() << json.dump(1) << "\n";
         table_.stream() << table;
@@ -263,6 +281,9 @@ void run_races(Options& options) {
     options.race.sight.condition = conditions_of(scene_options).front();
     options.race.sight.with_ids = options.ids == "tracked";
     options.race.fault = race_fault(options.fault);
+    options.race.sight.fov_rad = options.fov_deg * kDegree_rad;
+    options.race.by_safe = options.speed == "safe";
+    if (!options.race.by_safe) options.race.speed_mps = std::stod(options.speed);
     options.race.latency_s = options.latency_ms / 1000.0;
     options.race.start_error_rad = options.start_deg * kDegree_rad;
     options.race.drift_rad = options.drift_deg * kDegree_rad;
@@ -339,14 +360,19 @@ void add_race_command(CLI::App& program) {
         ->check(CLI::IsMember({"acceleration", "skidpad", "autocross", "trackdrive"}));
     command.add_flag("--vary", options->vary,
                      "acceleration and skidpad: each seed draws another course within the rules");
-    command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
+    command.add_option("--condition", options->condition, "paper, car, harsh or slam")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
     command.add_option("--range", options->race.sight.range_m, "radius of the visible half disc [m]")
         ->capture_default_str();
     command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
         ->check(CLI::Range(1, 1000));
-    command.add_option("--speed", options->race.speed_mps, "speed of the car [m/s]")
-        ->check(number_in(0.5, 40.0))
+    command.add_option("--fov", options->fov_deg, "angle of view, in the middle ahead [degrees]")
+        ->check(number_in(20.0, 180.0))
+        ->capture_default_str();
+    command
+        .add_option("--speed", options->speed,
+                    "speed of the car [m/s]; safe: as fast as the path and its trusted length allow")
+        ->check(number_in(0.5, 40.0) | CLI::IsMember({"safe"}))
         ->capture_default_str();
     command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
     command.add_option("--latency-ms", options->latency_ms, "simulated time from a frame to its path")

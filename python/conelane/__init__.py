@@ -19,7 +19,7 @@ from ._core import version as __version__
 
 __all__ = ["Answer", "Boundaries", "Color", "Detector", "DrivableLane", "Lane", "NO_ID", "Plan", "Planner", "RldSolution", "Scene", "Score",
            "Track", "generate_scenes", "load_tracks", "methods", "read_boundaries", "read_lanes", "read_scenes", "rld_parameters", "score",
-           "solve_rld", "write_boundaries", "write_lanes", "write_scenes"]
+           "solve_rld", "speed_profile", "write_boundaries", "write_lanes", "write_scenes"]
 
 NO_ID = -(2**63)  # of a cone that has none, among ids of `Planner.update`
 

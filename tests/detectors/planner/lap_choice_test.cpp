@@ -198,7 +198,8 @@ TEST(LapPlanner, AShortLaneDoesNotEndThePath) {
     plan = planner->update(straight_frame(0.8, 4.8, 4.8, 12.0), {.time_limit_ms = 1e4});
     ASSERT_EQ(plan.state, PlanState::following);
     EXPECT_GT(plan.lane.points.back().position.x(), end_x_m - 1.0);
-    EXPECT_LE(plan.safe_m, 12.0 - 4.8) << "only what the frame shows is trusted";
+    EXPECT_GT(plan.safe_m, 12.0 - 4.8) << "three frames have trusted more";
+    EXPECT_LE(plan.safe_m, plan.lane.length_m);
 }
 
 TEST(LapPlanner, InLaterLapsAFrameWithoutALaneIsBridgedByTheCourse) {
@@ -217,7 +218,7 @@ TEST(LapPlanner, InLaterLapsAFrameWithoutALaneIsBridgedByTheCourse) {
             const Plan plan = planner->update({0.1 * i, course.pose(0.6 * i), {}}, {.time_limit_ms = 1e4});
             ASSERT_EQ(plan.state, PlanState::bridging);
             EXPECT_NEAR(plan.age_s, 0.1 * (blind + 1), 1e-6) << "the course does not make it younger";
-            EXPECT_LE(plan.safe_m, 9.0) << "only what frames showed is trusted";
+            EXPECT_LE(plan.safe_m, is_later ? 50.0 : 9.0) << "what frames showed, and the course";
             if (!is_later) {
                 EXPECT_LT(plan.lane.length_m, 12.0);
                 continue;
@@ -322,8 +323,7 @@ TEST(LapPlanner, InLaterLapsTheCourseReplacesACandidateThatLeavesItFartherOn) {
     is_wrong = true;
     for (int wrong = 1; wrong <= 4; ++wrong, ++i, s_m += 0.6) {
         const Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), {});
-        EXPECT_EQ(plan.state, PlanState::bridging);
-        EXPECT_NEAR(plan.age_s, 0.1 * wrong, 1e-6);
+        EXPECT_EQ(plan.state, PlanState::following) << "the cones confirm the course, frame " << wrong;
         EXPECT_GT(plan.lane.length_m, 15.0);
         EXPECT_LT(tests::farthest_from_middle_m(oval.course(), s_m, plan.lane), 0.5);
     }

@@ -41,7 +41,7 @@ TEST(Vehicle, DrivesStraightWithoutSteering) {
 }
 
 TEST(Vehicle, DrivesTheCircleOfItsSteeringAngle) {
-    const VehicleLimits limits;
+    const SteeringLimits limits;
     const double radius_m = 10.0;
     const double angle_rad = std::atan(limits.wheelbase_m / radius_m);
     Vehicle car{{{0.0, 0.0}, 0.0}, angle_rad};
@@ -52,7 +52,7 @@ TEST(Vehicle, DrivesTheCircleOfItsSteeringAngle) {
 }
 
 TEST(Vehicle, SteersNoFasterAndNoFartherThanItsLimits) {
-    const VehicleLimits limits;
+    const SteeringLimits limits;
     Vehicle car;
     double before_rad = 0.0;
     for (int i = 0; i < 100; ++i) {
