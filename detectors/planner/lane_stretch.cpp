@@ -343,8 +343,7 @@ DrivableLane faired(const DrivableLane& lane, double smoothing_m) {
         spline = SmoothingSpline(places, weights, spacing_m, smoothing_m, false,
                                  spline.turning_1pm(kSharpest_1pm));
     }
-    std::vector<DrivablePoint> points(lane.points.begin(),
-                                      lane.points.begin() + static_cast<std::ptrdiff_t>(count));
+    std::vector<DrivablePoint> points = lane.points;  // an even last one stays as it is
     for (std::size_t i = 0; i < count; ++i) {
         const SmoothingSpline::Jet jet = spline.at(spacing_m * static_cast<double>(i));
         const double left_m = pose_of(points[i]).left_m(jet.position);

@@ -28,9 +28,7 @@ constexpr double kHalfWidth_m = 0.75;
 constexpr double kHalfLength_m = 1.4;
 constexpr double kMiddleAhead_m = 0.775;  ///< of the rear axle
 constexpr double kUnsteady_m = 0.3;
-constexpr double kNear_m = 10.0;          ///< length ahead of the car in which a path is compared
-constexpr double kCurvatureOver_m = 2.0;  ///< length before and behind a point of the true line
-constexpr double kStopMargin_m = 0.5;     ///< tolerance for the driver `truth`, whose pose is noisy
+constexpr double kNear_m = 10.0;  ///< length ahead of the car in which a path is compared
 constexpr double kMaxAcceleration_mps2 = 6.0;
 constexpr double kCreep_mps = 1.5;     ///< on a path that is not trusted, where the speed follows the trust
 constexpr double kSafeAhead_m = 60.0;  ///< longest part of a path that is driven by
@@ -72,12 +70,6 @@ bool moved(const std::vector<Point>& before, const std::vector<Point>& now) {
         if (!past_end && !before_start && foot.distance_m > kUnsteady_m) return true;
     }
     return false;
-}
-
-double length_of(const std::vector<Point>& path) {
-    double length_m = 0.0;
-    for (std::size_t i = 1; i < path.size(); ++i) length_m += (path[i] - path[i - 1]).norm();
-    return length_m;
 }
 
 /// 95 of 100 numbers are at most this; nothing of none.
@@ -450,7 +442,7 @@ class Referee {
         ++lap.frames;
         if (path.empty() || drive.safe_m < kShort_m) {
             ++lap.short_frames;
-            if (length_of(path) >= kNear_m && !leaves(course_, path, kNear_m, foot_)) ++lap.right_untrusted;
+            if (!path.empty() && !leaves(course_, path, kNear_m, foot_)) ++lap.right_untrusted;
         }
         if (!path.empty() && leaves(course_, path, std::min(kSafeAhead_m, drive.safe_m), foot_))
             ++lap.wrong_trusted;
@@ -458,10 +450,8 @@ class Referee {
         if (!near.empty() && !path_before_.empty())
             sideways_m_[laps_done_ > 0 ? 1 : 0].push_back(
                 foot_on_polyline(near.back(), path_before_).distance_m);
-        double along_m = 0.0;
-        for (std::size_t i = 0; i < std::min(path.size(), drive.curvature_1pm.size()); ++i) {
-            if (i > 0) along_m += (path[i] - path[i - 1]).norm();
-            if (along_m > kNear_m) break;
+        const std::size_t nearest = beginning(path, kNear_m).size();
+        for (std::size_t i = 0; i < std::min(nearest, drive.curvature_1pm.size()); ++i) {
             lap.max_curvature_1pm = std::max(lap.max_curvature_1pm, std::abs(drive.curvature_1pm[i]));
         }
     }
@@ -600,37 +590,6 @@ RaceFault race_fault(std::string_view name) {
 
 std::string_view to_string(RaceEnd end) {
     return kEnds[static_cast<std::size_t>(end)];
-}
-
-double curvature_at(const RaceCourse& course, long number) {
-    const auto count = static_cast<long>(course.line.size());
-    const long over = std::lround(kCurvatureOver_m / course.step_m);
-    const auto yaw_rad = [&](long i) {
-        const long kept = course.closed ? ((i % count) + count) % count : std::clamp(i, 0L, count - 1);
-        return course.line[static_cast<std::size_t>(kept)].yaw_rad;
-    };
-    const double turn_rad = yaw_rad(number + over) - yaw_rad(number - over);
-    return std::remainder(turn_rad, 2.0 * std::numbers::pi) / (2.0 * kCurvatureOver_m);
-}
-
-Driver truth_driver(const RaceCourse& course, int laps, double ahead_m) {
-    return [&course, laps, ahead_m, at = CourseFoot(course, course.start_m),
-            finish_m = std::optional<double>{}](const Frame& frame) mutable {
-        at.follow(frame.pose.position, 6.0);
-        if (!finish_m) {
-            finish_m = course.finish_m.value_or(at.at_m() + laps * at.round_m()) + kStopMargin_m;
-        }
-        Drive drive;
-        const auto first = static_cast<long>(std::floor(at.at_m() / course.step_m));
-        for (long i = 0; i <= static_cast<long>(ahead_m / course.step_m); ++i) {
-            const std::optional<Point> point = at.place(first + i);
-            if (!point) continue;
-            drive.path.push_back(*point);
-            drive.curvature_1pm.push_back(curvature_at(course, first + i));
-        }
-        drive.stop = at.at_m() >= *finish_m;
-        return drive;
-    };
 }
 
 RaceResult race(const RaceCourse& course, const RaceOptions& options, const Driver& driver) {

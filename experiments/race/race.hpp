@@ -95,7 +95,7 @@ struct LapFigures {
     int frames = 0;           ///< with a path
     int short_frames = 0;     ///< trusted for less than 3 m, also those without a path
     int wrong_trusted = 0;    ///< frames whose path leaves the lane where it is trusted
-    int right_untrusted = 0;  ///< trusted for less than 3 m, and right for the next 10 m
+    int right_untrusted = 0;  ///< trusted for less than 3 m, though its path is right for 10 m
     /// Of the path 5 m ahead, from the frame before; 95 of 100 are smaller.
     std::optional<double> sideways_p95_m = {};
     double max_curvature_1pm = 0.0;  ///< of the first 10 m of a path
@@ -127,13 +127,6 @@ struct RaceResult {
 
     [[nodiscard]] bool finished() const { return end == RaceEnd::finished; }
 };
-
-/// Of the true centre line at the point with this number [1/m].
-[[nodiscard]] double curvature_at(const RaceCourse& course, long number);
-
-/// A driver that returns the next `ahead_m` of the true centre line, from the pose that the car believes, and
-/// stops behind the last line. Its map frame is that of the world: no random map frame, drift or jumps.
-[[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps, double ahead_m = 20.0);
 
 /// Drives a course by the answers of a driver. The result, without `answer_ms`, depends only on the arguments
 /// and the answers. Precondition: the course was made by a function of course.hpp.
