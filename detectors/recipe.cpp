@@ -7,7 +7,7 @@
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_weights_reader.hpp"
+#include "graph_search/front/front_weights.hpp"
 #include "graph_search/shared/json_reader.hpp"
 #include "graph_search/shared/parameter_field.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -133,10 +133,6 @@ constexpr DetectorRecipe kRecipes[]{
       ColorUse::by_weight},
      LearnedFrom::nothing(),
      RldRecipe{.make_solver = path_pair, .cones = {kRldConeSet, kRldContext}}},
-    {{"rld-shape-context", "rld-context with the costs of the lane's shape", ClosedLanes::never,
-      ColorUse::by_weight},
-     LearnedFrom({}, kShapeCourses),
-     RldRecipe{.make_solver = path_pair, .cones = {kRldConeSet, kRldContext}, .shape_costs = true}},
     {{"delaunay-beam",
       "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
       "the lowest cost",

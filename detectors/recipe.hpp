@@ -80,7 +80,6 @@ class LearnedFrom {
 inline constexpr std::array kFrontWeights{&kFrontFile};
 inline constexpr std::array kLearnedRldWeights{&kLearnedWeightsFile};
 inline constexpr std::array kPaperClcWeights{&kRankNetPaperFile};
-inline constexpr std::array kClcRankWeights{&kRankNetExtendedFile};
 inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile};
 
 /// How to make a detector.

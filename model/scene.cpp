@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "model/geometry.hpp"
+#include "model/position_covariance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -99,6 +100,14 @@ ConeColor most_probable_color(const ColorProbabilities& probabilities) {
     const auto best = std::ranges::max_element(labels, {}, &std::pair<double, ConeColor>::first);
     const auto is_best = [&](const auto& label) { return label.first == best->first; };
     return std::ranges::count_if(labels, is_best) > 1 ? ConeColor::unknown : best->second;
+}
+
+std::optional<PositionCovariance> covariance_of(const std::array<double, 4>& matrix) {
+    constexpr double kOff = 1e-6;
+    const auto [xx, xy, yx, yy] = matrix;
+    if (xy == yx) return PositionCovariance{xx, xy, yy};
+    if (!(std::abs(xy - yx) <= kOff * std::max(std::abs(xy), std::abs(yx)))) return std::nullopt;
+    return PositionCovariance{xx, 0.5 * xy + 0.5 * yx, yy};
 }
 
 bool PositionCovariance::is_valid() const {

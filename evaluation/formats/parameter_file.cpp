@@ -65,13 +65,6 @@ RldParameters read_rld_parameters(const std::filesystem::path& file) {
     return parameters;
 }
 
-RldParameters parse_rld_parameters(std::string_view text, const std::filesystem::path& file) {
-    RldParameters parameters;
-    with_json_text(text, file,
-                   [&](const JsonNode& json) { parameters = rld_parameters_of(json, file.parent_path()); });
-    return parameters;
-}
-
 void write_rld_parameters(const std::filesystem::path& file, const RldParameters& parameters,
                           std::string_view training) {
     validate(parameters);

@@ -1,6 +1,7 @@
 #include "evaluation/outside/outside_solver.hpp"
 
 #include "evaluation/outside/solver_input.hpp"
+#include "model/connecting_flow.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

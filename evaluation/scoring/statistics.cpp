@@ -1,10 +1,12 @@
 #include "evaluation/scoring/statistics.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/seeded_random.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <numeric>
 #include <vector>
 
@@ -58,6 +60,39 @@ double shifted_geometric_mean(std::span<const double> sample, double shift) {
     double logarithms = 0.0;
     for (const double value : sample) logarithms += std::log(value + shift);
     return std::exp(logarithms / static_cast<double>(sample.size())) - shift;
+}
+
+CourseMean course_mean(std::span<const double> values, std::span<const std::string> courses,
+                       std::uint64_t seed) {
+    constexpr int kResamples = 2000;
+    constexpr double kTail = 0.025;
+    if (values.size() != courses.size()) throw InvalidInput("courses", "are not as many as the values");
+    CourseMean result{mean(values), {}, {}};
+    std::map<std::string, std::pair<double, double>> by_course;  // sum and number of values
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        by_course[courses[k]].first += values[k];
+        by_course[courses[k]].second += 1.0;
+    }
+    std::vector<std::pair<double, double>> sums;
+    for (const auto& [course, sum] : by_course) {
+        sums.push_back(sum);
+        result.of_course.push_back(sum.first / sum.second);
+    }
+    if (sums.size() < 2) return result;
+    boost::random::mt19937_64 random = generator_of("courses", seed);
+    boost::random::uniform_int_distribution<std::size_t> drawn(0, sums.size() - 1);
+    std::vector<double> means;
+    for (int resample = 0; resample < kResamples; ++resample) {
+        std::pair<double, double> sum;
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            const auto& [of_values, number] = sums[drawn(random)];
+            sum.first += of_values;
+            sum.second += number;
+        }
+        means.push_back(sum.first / sum.second);
+    }
+    result.interval.emplace(quantile(means, kTail), quantile(means, 1.0 - kTail));
+    return result;
 }
 
 std::optional<double> Sample::mean() const {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -27,6 +30,18 @@ inline constexpr double kGeometricMeanShift_ms = 1.0;
 
 /// exp(mean of log(x + shift)) - shift. Precondition: every value is above -shift.
 [[nodiscard]] double shifted_geometric_mean(std::span<const double> sample, double shift);
+
+/// A mean over runs on several courses. Runs on one course are alike, so whole courses are drawn again for
+/// the interval, with replacement.
+struct CourseMean {
+    double mean = 0.0;                                    ///< over all values
+    std::optional<std::pair<double, double>> interval{};  ///< 95 %; absent for a single course
+    std::vector<double> of_course;                        ///< means, by name of the course
+};
+/// `courses` names the course of each value. The same seed gives the same interval on any machine. Throws
+/// InvalidInput also if the sizes differ.
+[[nodiscard]] CourseMean course_mean(std::span<const double> values, std::span<const std::string> courses,
+                                     std::uint64_t seed = 1);
 
 /// Values of which there may be none: each statistic is absent then.
 class Sample {

@@ -13,7 +13,6 @@
 #include "experiments/training/training_run.hpp"
 #include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
-#include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "graph_search/clc/clc_detector.hpp"
@@ -22,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 namespace conelane::experiments {
@@ -169,8 +169,8 @@ Learned load_tuned(const DetectorRecipe& recipe, const fs::path& folder) {
 
 RldParameters tuned_shape(const LearningOptions& options, const EvaluationOptions& solved) {
     const Evaluation evaluation(scenes_to_tune_on(options), solved);
-    return tune([&](const RldParameters& parameters) { return evaluation(parameters); },
-                with_shape_costs(RldParameters{}), {1, options.evaluations, options.scenes.seed})
+    return tune(std::cref(evaluation), with_shape_costs(RldParameters{}),
+                {options.evaluations, options.scenes.seed})
         .parameters;
 }
 
@@ -183,7 +183,7 @@ RldParameters with_color_weight(const RldParameters& parameters, const LearningO
     for (const double weight : kColorWeights) {
         RldParameters tried = parameters;
         tried.w_color = weight;
-        const double value = mean_over_scenes(evaluation(tried));
+        const double value = evaluation(tried);
         if (value <= best_value) continue;
         best = tried;
         best_value = value;

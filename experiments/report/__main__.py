@@ -9,6 +9,7 @@ import sys
 import warnings
 
 from .experiments.comparison import by_rate_figure, latency_figure
+from .experiments.solvers import times_figure
 from .experiments.speed import growth_figure
 from .load import Missing, load_results
 from .page import render
@@ -26,13 +27,12 @@ _MAIN = (("usable.png", "Usable lanes", lambda results: by_rate_figure(results, 
 def pictures(results):
     """(file name, bytes) of each main figure that the results can show; of several conditions, the papers'."""
     made = []
-    if not results.samples:
-        return made
-    results = results.under(results.main_condition)
+    main = results.under(results.main_condition) if results.samples else None
+    figures = [("engines.png", "Time to a proven optimum", times_figure, results)] + [(*one, main) for one in _MAIN if main]
     with picture_colors():
-        for name, title, figure_of in _MAIN:
+        for name, title, figure_of, shown in figures:
             try:
-                figure, axes = figure_of(results)
+                figure, axes = figure_of(shown)
             except Missing:
                 continue
             axes.set_title(title, loc="left", fontsize=10)

@@ -46,16 +46,15 @@ class PermutedSession : public MilpSession {
     std::unique_ptr<MilpSession> session_;
 };
 
-std::unique_ptr<RldSolver> make_inside(const RldSolverEntry& entry, Formulation formulation) {
-    const auto milp =
-        std::ranges::find(milp_backends(), entry.name, [](const MilpBackend& b) { return b.entry.name; });
-    if (milp == milp_backends().end()) return entry.make(formulation);
+std::unique_ptr<RldSolver> make_inside(const RldSolverEntry& entry, const ProgramForm& form) {
+    const MilpBackend* const milp = find_milp_backend(entry.name);
+    if (milp == nullptr) return entry.make(form.formulation);
     return make_milp_rld_solver(
         [&backend = *milp](const BinaryProgram& program, std::uint64_t seed) -> std::unique_ptr<MilpSession> {
             if (seed == 0) return backend.load(program);
             return std::make_unique<PermutedSession>(backend, permuted(program, seed));
         },
-        formulation);
+        form);
 }
 
 }  // namespace
@@ -71,6 +70,19 @@ std::string Backend::label() const {
     if (uses_formulation()) label += fmt::format("/{}", to_string(formulation));
     if (all_rows) label += " whole";
     return warm_start ? label + " warm" : label;
+}
+
+std::string Backend::treatment() const {
+    const std::string start = warm_start ? "the last lane as start" : "no start";
+    if (!uses_formulation()) return "no program; " + start;
+    const bool tuned = !outside && entry_of(*this).has(SolverTrait::tuned);
+    return fmt::format("{} rows, {}; settings: {}; {}",
+                       formulation == Formulation::paper ? "printed" : "tight",
+                       all_rows ? "all" : "on demand",
+                       outside ? "of its command"
+                       : tuned ? "tuned"
+                               : "defaults",
+                       start);
 }
 
 bool Backend::takes(std::size_t cones) const {
@@ -117,7 +129,7 @@ BackendSolver::BackendSolver(const Backend& backend) {
     }
     const RldSolverEntry& entry = entry_of(backend);
     library_ = entry.library;
-    inside_ = make_inside(entry, backend.formulation);
+    inside_ = make_inside(entry, {backend.formulation, backend.all_rows});
 }
 
 std::optional<double> BackendSolver::engine_ms() const {

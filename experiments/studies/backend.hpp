@@ -20,12 +20,14 @@ struct Backend {
     Formulation formulation = Formulation::tight;
     bool warm_start = false;
     std::optional<OutsideDetector> outside{};
-    bool all_rows = false;  ///< of a program from outside: one file with all rows
+    bool all_rows = false;  ///< one program with all rows, instead of rows on demand
 
     /// "cbc/tight", "cbc/tight warm", "highs/tight whole"; only the solver's name where it ignores
     /// formulations.
     [[nodiscard]] std::string label() const;
     [[nodiscard]] bool uses_formulation() const;
+    /// "tight rows, on demand; settings: tuned; no start": what a row of results says of the comparison.
+    [[nodiscard]] std::string treatment() const;
     /// Whether the solver takes cone sets of this size, 0 for any (RldSolverEntry::max_cones).
     [[nodiscard]] bool takes(std::size_t cones) const;
 };

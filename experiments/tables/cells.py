@@ -6,7 +6,7 @@ from statistics import fmean
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))  # of the package report, which reads and rounds as these tables do
 from report.records import InputError, read_json, read_lines  # noqa: E402, F401
-from report.summaries import UNKNOWN, fixed, is_close, median, percent, quantile, race_measures  # noqa: E402, F401
+from report.summaries import UNKNOWN, fixed, median, percent, quantile, race_measures  # noqa: E402, F401
 
 
 def lines_of(path):
@@ -25,6 +25,8 @@ def version_of(path):
 
 
 def rounded(value):
+    if isinstance(value, list):
+        return list(map(rounded, value))
     return round(value, 6) if isinstance(value, float) else value
 
 

@@ -90,7 +90,7 @@ class RightLane {
             vertex_of.emplace(cone.id, static_cast<Vertex>(points.size()));
             points.push_back(cone.position);
         }
-        graph_.build(points, search_.d_max_m, search_.edge_rule);
+        graph_.build(points, search_.d_max_m);
         starts_ = start_pairs(annotated.scene, std::numeric_limits<std::size_t>::max(), search_.start,
                               search_.bounds);
         for (const Side side : {kLeft, kRight}) {

@@ -1,6 +1,7 @@
 #include "experiments/tuning/evaluation.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "conelane/solve_scene.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/world/ground_truth.hpp"
 #include "experiments/progress/parallel.hpp"
@@ -10,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 namespace conelane::experiments {
@@ -17,31 +19,14 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kObjectives{"accuracy", "iou", "success", "usable"};
 
-}  // namespace
-
-std::optional<std::size_t> seen_count(const EvaluationOptions& options) {
-    if (!options.nearest) return std::nullopt;
-    return std::max(*options.nearest, options.context.value_or(0));
-}
-
-EvaluatedScene evaluate(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                        const EvaluationOptions& options) {
-    const std::optional<std::size_t> count = seen_count(options);
-    EvaluatedScene evaluated;
-    evaluated.seen = count ? nearest_ahead(scene, *count) : scene;
-    static_cast<SolvedScene&>(evaluated) =
-        solve_scene(solver, evaluated.seen, parameters, {.limits = {options.time_limit_ms}});
-    if (evaluated.report.status == SolveStatus::error) throw InvalidInput(scene.id, evaluated.report.message);
-    if (!evaluated.report.lane_graph) return evaluated;
-    evaluated.answer = answer_of(*evaluated.report.lane_graph, evaluated.seen, options);
-    return evaluated;
-}
-
-LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen, const EvaluationOptions& options) {
+/// The lane of least cost, found among the cones of the context and cut to the cone set; no lane if nothing
+/// is left.
+LaneAnswer answer_of(const SolvedScene& solved, const Scene& seen, const EvaluationOptions& options) {
     LaneAnswer answer;
-    std::optional<Lane> lane = to_lane(graph, seen);
+    if (!solved.report.lane_graph) return answer;
+    std::optional<Lane> lane = to_lane(*solved.report.lane_graph, seen);
     if (!lane) return answer;
-    if (seen_count(options) > options.nearest) {
+    if (options.context > options.nearest) {
         *lane = cut_to_nearest(std::move(*lane), seen, *options.nearest);
         if (lane->left.empty() || lane->right.empty()) return answer;
     }
@@ -50,6 +35,7 @@ LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen, const Evaluation
     return answer;
 }
 
+/// The value of an answer under the objective, in [0, 1]; 0 without a lane.
 double value_of(const LaneAnswer& answer, const AnnotatedScene& scene, const TrackBoundaries& boundaries,
                 const EvaluationOptions& options) {
     if (answer.status != LaneStatus::found) return 0.0;
@@ -60,6 +46,8 @@ double value_of(const LaneAnswer& answer, const AnnotatedScene& scene, const Tra
                                                                         : result.success();
     return is_good ? 1.0 : 0.0;
 }
+
+}  // namespace
 
 std::span<const std::string_view> objective_names() {
     return kObjectives;
@@ -78,34 +66,33 @@ Evaluation::Evaluation(SceneSet set, const EvaluationOptions& options)
     if (set_.scenes.empty()) throw InvalidInput("--tracks", "no scene has a ground truth in its cone set");
 }
 
-std::vector<LapFigure> Evaluation::operator()(const RldParameters& parameters) const {
+double Evaluation::operator()(const RldParameters& parameters) const {
     const std::vector<AnnotatedScene>& scenes = set_.scenes;
     std::vector<double> values(scenes.size(), 0.0);
     std::atomic<std::size_t> timed_out{0};
-    const double timed_out_limit = options_.max_timed_out * static_cast<double>(scenes.size());
-    const auto abandoned = [&] { return static_cast<double>(timed_out.load()) > timed_out_limit; };
+    const auto count = static_cast<double>(scenes.size());
+    const auto abandoned = [&] {
+        return static_cast<double>(timed_out.load()) > options_.max_timed_out * count;
+    };
     in_parallel(
         scenes.size(), options_.threads, [] { return make_path_pair_solver(); },
         [&](std::unique_ptr<RldSolver>& solver, std::size_t i) {
             if (abandoned()) return;
-            const EvaluatedScene evaluated = evaluate(*solver, scenes[i].scene, parameters, options_);
-            const SolveStatus status = evaluated.report.status;
+            const Scene& scene = scenes[i].scene;
+            const std::optional<std::size_t> most = std::max(options_.nearest, options_.context);
+            const Scene seen = most ? nearest_ahead(scene, *most) : scene;
+            const SolvedScene solved =
+                solve_scene(*solver, seen, parameters, {.limits = {options_.time_limit_ms}});
+            const SolveStatus status = solved.report.status;
+            if (status == SolveStatus::error) throw InvalidInput(scene.id, solved.report.message);
             if (status == SolveStatus::feasible || status == SolveStatus::stopped) {
                 ++timed_out;
-            } else if (evaluated.report.nodes <= options_.max_nodes) {
-                values[i] = value_of(evaluated.answer, scenes[i], boundaries_of(scenes[i]), options_);
+            } else if (solved.report.nodes <= options_.max_nodes) {
+                values[i] = value_of(answer_of(solved, seen, options_), scenes[i],
+                                     set_.tracks.at(scenes[i].track), options_);
             }
         });
-    std::vector<LapFigure> laps;
-    const std::vector<std::size_t> starts = lap_starts(scenes);
-    for (std::size_t lap = 0; lap + 1 < starts.size(); ++lap) {
-        const AnnotatedScene& first = scenes[starts[lap]];
-        LapFigure figure{first.track, first.false_positive_rate.value_or(0.0), first.range_m.value_or(0.0),
-                         starts[lap + 1] - starts[lap], 0.0};
-        for (std::size_t i = starts[lap]; i < starts[lap + 1] && !abandoned(); ++i) figure.sum += values[i];
-        laps.push_back(std::move(figure));
-    }
-    return laps;
+    return abandoned() ? 0.0 : std::accumulate(values.begin(), values.end(), 0.0) / count;
 }
 
 }  // namespace conelane::experiments

@@ -68,7 +68,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
 
     points_.clear();
     for (const Cone& cone : scene.cones) points_.push_back(cone.position);
-    if (graph_.build(points_, options_.d_max_m, options_.edge_rule, budget_)) {
+    if (graph_.build(points_, options_.d_max_m, budget_)) {
         reach_.reset(graph_, options_.nearest_neighbours);
         rules_.reach = &reach_;
         next_vertex_.reset(graph_, options_.next_vertex_distance_weight / options_.d_max_m, &reach_);

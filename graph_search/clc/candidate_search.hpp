@@ -25,7 +25,6 @@ namespace conelane {
 struct CandidateSearchOptions {
     std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2, for all starting pairs together
     double d_max_m = 5.5;                 ///< largest distance of consecutive cones
-    EdgeRule edge_rule;                   ///< absent: all pairs within d_max, equation (2)
     /// A boundary goes on to this many nearest neighbours of a cone only, see StepReach. 0: to all, as in the
     /// paper.
     std::size_t nearest_neighbours = 0;

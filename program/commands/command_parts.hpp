@@ -4,6 +4,7 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/comparison.hpp"
+#include "experiments/training/option_field.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -11,6 +12,10 @@
 #include <string>
 #include <unordered_map>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 /// What several commands do.
 namespace conelane::experiments {
@@ -39,6 +44,9 @@ class ScenesById {
     std::vector<AnnotatedScene> scenes_;
     std::unordered_map<std::string, const AnnotatedScene*> by_id_;
 };
+
+/// Declares the fields that have an option. The values must outlive the command.
+void add_field_options(CLI::App& command, const OptionFields& fields);
 
 /// Output line by line: a file that appears when it is complete, or standard output at once.
 class LineOutput {

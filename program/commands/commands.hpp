@@ -9,7 +9,6 @@ namespace conelane::experiments {
 void add_scenes_command(CLI::App& program);
 void add_methods_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
-void add_echo_command(CLI::App& program);
 void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_cross_check_command(CLI::App& study);  ///< a sub-command of `study`

@@ -2,7 +2,6 @@
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/field_options.hpp"
 
 #include <memory>
 #include <string>

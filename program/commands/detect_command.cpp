@@ -8,13 +8,10 @@
 #include "solvers/registry.hpp"
 
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -105,38 +102,16 @@ void list_solvers() {
     }
 }
 
-/// Only the id is read, which is first in each question: parsing JSON, or std::cin, would take longer than
-/// the round trip itself.
-void echo() {
-    constexpr std::string_view kBegin = R"({"id":")";
-    char* buffer = nullptr;
-    std::size_t capacity = 0;
-    for (ssize_t length = 0; (length = ::getline(&buffer, &capacity, stdin)) > 0;) {
-        const std::string_view line(buffer, static_cast<std::size_t>(length));
-        if (!line.starts_with(kBegin)) continue;  // a reset
-        const std::string_view rest = line.substr(kBegin.size());
-        const std::string id(rest.substr(0, rest.find('"')));
-        std::printf(R"({"scene":"%s","status":"none"})"
-                    "\n",
-                    id.c_str());
-        std::fflush(stdout);
-    }
-    std::free(buffer);
-}
-
 }  // namespace
 
 void add_methods_command(CLI::App& program) {
     CLI::App& command =
         *program.add_subcommand("methods", "the detection methods of this build, or its RLD solvers");
-    auto all = std::make_shared<bool>(false);
     auto solvers = std::make_shared<bool>(false);
-    command.add_flag("--all", *all, "also variants that leave a part out, to show what the part is worth");
-    command.add_flag("--solvers", *solvers, "the RLD solvers instead")->excludes("--all");
-    command.callback([all, solvers] {
+    command.add_flag("--solvers", *solvers, "the RLD solvers instead");
+    command.callback([solvers] {
         if (*solvers) return list_solvers();
         for (const Method& method : known_methods()) {
-            if (method.is_ablation && !*all) continue;
             const ConeSet set = cone_set(*method.recipe, {});
             std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
             if (set.context) cones += fmt::format(" of {}", *set.context);
@@ -171,14 +146,6 @@ void add_detect_command(CLI::App& program) {
     command.add_option("--weights", options->weights,
                        "weights of front or front-warm: a file that `conelane train front` wrote");
     command.callback([options] { detect(*options); });
-}
-
-void add_echo_command(CLI::App& program) {
-    CLI::App& command =
-        *program.add_subcommand("echo",
-                                "reads scenes from standard input, in the protocol of programs from outside, "
-                                "and answers each at once with status none: measures the round trip");
-    command.callback(echo);
 }
 
 }  // namespace conelane::experiments

@@ -7,6 +7,7 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/report/package.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
@@ -42,6 +43,8 @@ struct FollowOptions : DriveOutput {  // `out`: "-" for standard output
     std::optional<int> laps;
     double interval_s = 0.1;  ///< between frames without time
     double time_limit_ms = 50.0;
+    std::string page;    ///< empty: none
+    std::string python;  ///< that makes the page; empty: the first found
 };
 
 std::string detector_of(const FollowOptions& options) {
@@ -77,11 +80,24 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
     }
 }
 
+/// The page that plays a run, of its frames and plans.
+void write_page(const FollowOptions& options, const std::filesystem::path& plans) {
+    const std::filesystem::path made = plans.parent_path() / "page.html";
+    try {
+        run_package("report.replay", {options.frames, plans, made, fmt::format("{}", options.interval_s)},
+                    options.python, false);
+    } catch (const PackageRefused&) {
+        throw CLI::RuntimeError(2);  // it has printed the reason
+    }
+    put_in_place({{made, options.page}});
+}
+
 /// The plans of a run, where they are written, not only the course.
 class PlanSink {
   public:
     explicit PlanSink(const FollowOptions& options) : detector_(detector_of(options)) {
         if (options.format == "json") output_.emplace(options.out);
+        if (!options.page.empty()) for_page_.emplace((folder_.emplace().path() / "plans.jsonl").string());
     }
     void put(const FrameLine& line, const Plan& plan) {
         write(plan_line(line.number, line.frame->time_s, plan));
@@ -95,7 +111,11 @@ class PlanSink {
         write(refused_frame_line(line.number, message));
         errors_.add_error(detector_, std::to_string(line.number), message);
     }
-    void commit() {
+    void commit(const FollowOptions& options) {
+        if (for_page_) {
+            for_page_->commit();
+            write_page(options, folder_->path() / "plans.jsonl");
+        }
         if (output_) output_->commit();
     }
     void report() const { report_errors(errors_); }
@@ -103,10 +123,13 @@ class PlanSink {
   private:
     void write(const std::string& text) {
         if (output_) output_->put(text);
+        if (for_page_) for_page_->put(text);
     }
 
     std::string detector_;
     std::optional<LineOutput> output_;
+    std::optional<TemporaryFolder> folder_;
+    std::optional<LineOutput> for_page_;
     AnswerErrors errors_;
 };
 
@@ -155,6 +178,9 @@ void follow_frames(const FollowOptions& options) {
     if (options.format != "json" && options.out == kStandardStream) {
         throw InvalidInput("--out", "is a file where --format is " + options.format);
     }
+    if (options.frames == kStandardStream && !options.page.empty()) {
+        throw InvalidInput("--page", "takes the frames of a file");
+    }
     const std::unique_ptr<Planner> planner = planner_of(options);
     PlanSink sink(options);
     if (options.frames == kStandardStream) {
@@ -163,7 +189,7 @@ void follow_frames(const FollowOptions& options) {
         answer_file(options, *planner, sink);
     }
     if (options.format != "json") write_course(options, *planner);
-    sink.commit();
+    sink.commit(options);
     sink.report();
 }
 
@@ -259,6 +285,11 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
         ->needs(follow)
         ->check(CLI::Range(0.001, 10.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
         ->capture_default_str();
+    add_output_option(command, "--page", options.page,
+                      "PAGE.html, which plays the run: cones, lanes, trust, where there was no lane and why")
+        ->needs(follow);
+    command.add_option("--python", options.python, "interpreter that makes the page; python3 without it")
+        ->needs("--page");
     add_time_limit_option(command, options.time_limit_ms);
     command.get_option("--time-limit")->needs(follow);
 }

@@ -5,9 +5,9 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/outside/solver_input.hpp"
 #include "evaluation/proofs/claim_verdict.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "model/connecting_flow.hpp"
 #include "model/lane_graph_model.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
@@ -26,8 +26,8 @@
 #include <fmt/format.h>
 
 // Export and import are about the program of one scene. Rows that a solve adds on demand, (5) and the
-// pairing, are too many to write in full. So without --all-rows, an optimum of the file is only a bound for
-// the scene; it is the scene's optimum if its point is a lane graph.
+// pairing, are too many to write in full; a flow replaces them. With --rows-on-demand the file has neither:
+// its optimum is only a bound for the scene, unless its point is a lane graph.
 namespace conelane::experiments {
 namespace {
 
@@ -38,7 +38,7 @@ struct ProgramSource {
     std::string formulation = "tight";
     std::optional<std::size_t> nearest;
     ParameterSource parameters;
-    bool all_rows = false;
+    bool all_rows = true;
 };
 
 void add_program_options(CLI::App& command, ProgramSource& source) {
@@ -51,9 +51,10 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
         ->capture_default_str();
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
     add_parameter_options(command, source.parameters, "the defaults");
-    command.add_flag("--all-rows", source.all_rows,
-                     "add no cycles and the pairing, as columns and rows of a flow: the optimum of the file "
-                     "is that of the scene");
+    command.add_flag(
+        "--all-rows,!--rows-on-demand", source.all_rows,
+        "no cycles and the pairing are in the file, as columns and rows of a flow, so its optimum "
+        "is that of the scene (the default); --rows-on-demand leaves them out");
 }
 
 Scene load_scene(const ProgramSource& source) {
@@ -206,11 +207,11 @@ void add_export_command(CLI::App& program) {
         "export",
         "the program of a scene as MPS or LP file, or with --sol another program's solution of that file as "
         "solution of the scene, for `conelane check`.\n"
-        "Without --all-rows the file leaves out the rows that conelane's solvers add on demand: no cycles "
-        "(5), "
-        "and the pairing near_far. A solution file whose point, objective or bound contradict each other or "
-        "the "
-        "program is refused, and so is an optimum that an own search within the time limit refutes; one that "
+        "With --rows-on-demand the file leaves out the rows that conelane's solvers add on demand: no cycles "
+        "(5), and the pairing near_far. A solution file whose point, objective or bound contradict each "
+        "other "
+        "or the program is refused, and so is an optimum that an own search within the time limit refutes; "
+        "one that "
         "it does not prove is unverified and counts as feasible. A solution with a cycle or against the "
         "pairing "
         "is an error");

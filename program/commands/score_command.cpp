@@ -112,11 +112,11 @@ void score_all(const ScoreOptions& options) {
         nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
         if (!options.detectors.empty()) run["lanes_of_methods"] = options.detectors;
         AtomicFile output(options.json);
-        write_results(output.stream(), scored, {}, run.dump());
+        write_results(output.stream(), scored, run.dump());
         output.commit();
     }
     if (options.wide) {
-        fmt::print("{}{}", wide_table(scored, {}), table_note_on(left_out));
+        fmt::print("{}{}", wide_table(scored), table_note_on(left_out));
     } else {
         fmt::print("{}all measures: conelane score --wide\n", summary(scored, left_out));
     }

@@ -10,6 +10,7 @@
 #include "experiments/progress/progress.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
@@ -53,14 +54,19 @@ ChosenSolver choose(const Options& options) {
         return {std::make_unique<OutsideSolver>(*outside, how), outside->name,
                 std::string(to_string(how.formulation))};
     }
-    if (options.all_rows)
-        throw InvalidInput("--all-rows", "is for programs from outside: --solver exec:NAME=COMMAND");
     const RldSolverEntry* entry = find_rld_solver(options.solver);
     if (entry == nullptr) {
         throw InvalidInput("--solver",
                            "there is no solver '" + options.solver + "', see `conelane methods --solvers`");
     }
-    return {entry->make(formulation), options.solver, options.formulation};
+    if (!options.all_rows) return {entry->make(formulation), options.solver, options.formulation};
+    const MilpBackend* const milp = find_milp_backend(options.solver);
+    if (milp == nullptr)
+        throw InvalidInput("--all-rows", "'" + options.solver + "' solves no program, so there are no rows");
+    return {make_milp_rld_solver(
+                [milp](const BinaryProgram& program, std::uint64_t) { return milp->load(program); },
+                {formulation, true}),
+            options.solver, options.formulation};
 }
 
 /// The number of scenes by status, in the order in which the statuses first occur.
@@ -159,8 +165,8 @@ void add_solve_command(CLI::App& program) {
         ->capture_default_str();
     command.add_flag(
         "--all-rows", options->all_rows,
-        "a program from outside gets one file with all rows (no cycles and the pairing as a flow) and is "
-        "asked once; without it, rows that its point violates are added and it is asked again");
+        "a solver of programs gets one with all rows (no cycles and the pairing as a flow) and is asked "
+        "once; without it, rows that its point violates are added and it is asked again");
     command
         .add_option("--formulation", options->formulation,
                     "the program, for solvers that use one: tight, or paper as printed")

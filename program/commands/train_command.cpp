@@ -10,8 +10,8 @@
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/weights/weight_files.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/field_options.hpp"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,7 +1,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "evaluation/formats/cone_json.hpp"
+#include "model/position_covariance.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>

@@ -168,6 +168,7 @@ void add_scenes(py::module_& module);
 void add_lanes(py::module_& module);
 void add_detector(py::module_& module);
 void add_rld(py::module_& module);
+void add_files(py::module_& module);  ///< not in a build of the core alone
 
 }  // namespace conelane::python
 

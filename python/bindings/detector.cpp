@@ -15,7 +15,6 @@
 #include <utility>
 #include <variant>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 namespace conelane::python {
@@ -414,7 +413,7 @@ line is not on the lane, not known, or crossed)",
         .get("answer", "Answer: of the detector in this frame", &Plan::answer)
         .get("latency_ms", "float: wall clock of the update [ms]", &PlanObject::latency_ms)
         .repr([](const PlanObject& p) {
-            return fmt::format("<conelane.Plan {}: {:.1f} m>", to_string(p.state), p.lane.length_m);
+            return py::str("<conelane.Plan {}: {:.1f} m>").format(to_string(p.state), p.lane.length_m);
         });
 }
 
@@ -438,7 +437,7 @@ void add_planner(py::module_& module) {
         .get("mission", "str: its name", &PlannerObject::mission, kName)
         .get("detector", "str: its name", &PlannerObject::detector)
         .repr([](const PlannerObject& p) {
-            return fmt::format("<conelane.Planner '{}' by '{}'>", to_string(p.mission()), p.detector());
+            return py::str("<conelane.Planner '{}' by '{}'>").format(to_string(p.mission()), p.detector());
         });
 }
 

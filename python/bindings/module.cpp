@@ -65,4 +65,7 @@ PYBIND11_MODULE(_core, module) {
     conelane::python::add_lanes(module);
     conelane::python::add_detector(module);
     conelane::python::add_rld(module);
+#ifdef CONELANE_PYTHON_FILES
+    conelane::python::add_files(module);
+#endif
 }

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 namespace conelane::python {
@@ -145,8 +144,8 @@ before any lane graph) or "error")",
              [](const SolutionObject& s) { return array(indices_of(s.lane.right, s.cones, "right")); })
         .repr([](const SolutionObject& s) {
             const std::string reason =
-                s.stopped_by ? fmt::format(", stopped by {}", to_string(*s.stopped_by)) : "";
-            return fmt::format("<conelane.RldSolution {}{}>", to_string(s.status), reason);
+                s.stopped_by ? ", stopped by " + std::string(to_string(*s.stopped_by)) : "";
+            return py::str("<conelane.RldSolution {}{}>").format(to_string(s.status), reason);
         });
     add_function(module, kSolveRld, solve_rld);
     add_function(module, kRldParameters, parameters_as_dict);

@@ -28,7 +28,7 @@ set(layers_of_experiments progress training tuning methods comparison options cr
 set(layers_of_program commands main)
 set(layered solvers/path_pair evaluation experiments program)
 set(private_libraries
-    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|zlib|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|interfaces/highs|boost/|zlib|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 
 # The folder of each public header.
 file(GLOB_RECURSE public_headers RELATIVE ${ROOT} ${ROOT}/*/include/conelane/*.hpp ${ROOT}/*/*/include/conelane/*.hpp)

@@ -37,9 +37,7 @@ Lane lane_of(int cones) {
 }
 
 SceneScore scored(const AnnotatedScene& scene, const Lane& lane) {
-    LaneAnswer answer;
-    answer.status = LaneStatus::found;
-    answer.lane = lane;
+    LaneAnswer answer{.status = LaneStatus::found, .lane = lane};
     return score(scene, answer, 1.0, std::nullopt, &kRun);
 }
 

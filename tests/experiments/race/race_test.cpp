@@ -536,7 +536,7 @@ TEST(Drivers, UnknownNamesAreRefused) {
     EXPECT_THROW(static_cast<void>(racers({"front,front"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(racers({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(racers({"exec:a=b"}, WithPlanner::only)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(racers({"clc-longest"}, WithPlanner::only)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(racers({"no-method"}, WithPlanner::only)), InvalidInput);
     const std::vector<Racer> both = racers({"truth,front"}, WithPlanner::both);
     ASSERT_EQ(both.size(), 3U);
     EXPECT_EQ(both[2].name, "front+planner");

@@ -16,8 +16,7 @@ std::vector<Track> courses() {
 /// Half of the draws have colors, with every kind of fault; their geometry is the same as without.
 TEST(FrontScenes, HalfOfTheDrawsShowColorsThatMayBeWrongOrMissing) {
     const FrontScenes colored(courses(), {}, 3);
-    FrontSceneOptions without;
-    without.colored_share = 0.0;
+    FrontSceneOptions without{.colored_share = 0.0};
     const FrontScenes plain(courses(), without, 3);
     std::size_t draws = 0;
     std::size_t with_color = 0;
@@ -58,11 +57,8 @@ TEST(FrontScenes, HalfOfTheDrawsShowColorsThatMayBeWrongOrMissing) {
 }
 
 TEST(FrontScenes, ScenesOfFalseConesHaveTheShareCountsAndRangesThatAreGiven) {
-    FrontSceneOptions options;
-    options.scenes_per_draw = 1;
-    options.noise_share = 0.7;
-    options.noise_cones = {8, 12};
-    options.noise_ranges_m = {15.0, 20.0};
+    FrontSceneOptions options{
+        .scenes_per_draw = 1, .noise_share = 0.7, .noise_cones = {8, 12}, .noise_ranges_m = {15.0, 20.0}};
     const FrontScenes scenes(courses(), options, 3);
     std::set<std::size_t> counts;
     double farthest_m = 0.0;
@@ -107,9 +103,7 @@ TEST(FrontScenes, DrawTheSameForTheSameNumberWithUsableGroundTruths) {
             ASSERT_EQ(a.scene.cones.size(), b.scene.cones.size());
             for (std::size_t k = 0; k < a.scene.cones.size(); ++k)
                 EXPECT_EQ(a.scene.cones[k].position, b.scene.cones[k].position);
-            LaneAnswer answer;
-            answer.status = LaneStatus::found;
-            answer.lane = *a.ground_truth;
+            LaneAnswer answer{.status = LaneStatus::found, .lane = *a.ground_truth};
             const SceneScore scored = score(a, answer, 0.0, std::nullopt, &first.boundaries);
             EXPECT_GT(scored.iou.value_or(0.0), 0.999);
             EXPECT_TRUE(scored.usable().value_or(false)) << a.scene.id;

@@ -185,10 +185,7 @@ TEST(FrontTraining, AnInputThatIsLeftOutKeepsNoWeight) {
 }
 
 TEST(FrontTraining, LearnsToFindLanesOnACourseItHasNotSeen) {
-    SceneOptions scenes;
-    scenes.false_positive_rates = {0.2};
-    scenes.ranges_m = {30.0};
-    scenes.every_m = 12.0;
+    SceneOptions scenes{.false_positive_rates = {0.2}, .ranges_m = {30.0}, .every_m = 12.0};
     const SceneSet other = make_scene_set({"generated:slalom@5"}, scenes);
     FrontTrainingOptions options = quick();
     options.draws_per_step = 4;
@@ -204,10 +201,7 @@ TEST(FrontTraining, LearnsToFindLanesOnACourseItHasNotSeen) {
 }
 
 TEST(FrontTraining, FiguresOfARunCountWhereItsPathShowsTheWay) {
-    SceneOptions scenes;
-    scenes.false_positive_rates = {0.0};
-    scenes.ranges_m = {30.0};
-    scenes.every_m = 12.0;
+    SceneOptions scenes{.false_positive_rates = {0.0}, .ranges_m = {30.0}, .every_m = 12.0};
     SceneSet run = make_scene_set({"generated:slalom@5"}, scenes);
     ASSERT_GT(run.scenes.size(), 5U);
     TrackBoundaries& course = run.tracks.begin()->second;
@@ -239,12 +233,11 @@ TEST(FrontTraining, NamesThatAreNoneAreRefused) {
 }
 
 TEST(FrontTraining, ARunRecordsWhatItDependedOn) {
-    FrontTrainingRunOptions options;
-    options.tracks = {"generated:slalom@1"};
-    options.hold_out = {"generated:kidney@2"};
-    options.hold_out_every_m = 60.0;
-    options.rates = {0.3};
-    options.training = quick();
+    FrontTrainingRunOptions options{.tracks = {"generated:slalom@1"},
+                                    .hold_out = {"generated:kidney@2"},
+                                    .hold_out_every_m = 60.0,
+                                    .rates = {0.3},
+                                    .training = quick()};
     std::vector<std::string> lines;
     const FrontTrainingRun run =
         run_front_training(options, [&](const std::string& line) { lines.push_back(line.substr(0, 16)); });

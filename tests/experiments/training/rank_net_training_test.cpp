@@ -34,12 +34,7 @@ std::vector<CandidateList> lists_by_fourth_feature(std::size_t count, std::uint6
 }
 
 RankNetTrainingOptions quick() {
-    RankNetTrainingOptions options;
-    options.units = 8;
-    options.epochs = 20;
-    options.pairs_a_step = 64;
-    options.show_progress = false;
-    return options;
+    return RankNetTrainingOptions{.units = 8, .epochs = 20, .pairs_a_step = 64, .show_progress = false};
 }
 
 TEST(Adam, ScalesEveryDerivativeByItsRootMeanSquare) {
@@ -250,15 +245,10 @@ TEST(RankNetTraining, RefusesOptionsThatDoNotFitEachOther) {
 }
 
 TEST(CandidateLists, AreBetterWhereABeamSearchLeads) {
-    SceneOptions scenes;
-    scenes.false_positive_rates = {0.5};
-    scenes.ranges_m = {50.0};
-    scenes.every_m = 15.0;
-    scenes.conditions = {"car"};
+    SceneOptions scenes{
+        .false_positive_rates = {0.5}, .ranges_m = {50.0}, .every_m = 15.0, .conditions = {"car"}};
     const SceneSet set = make_scene_set({"generated:hairpins@99"}, scenes);
-    CandidateListOptions options;
-    options.search = extended_search_options();
-    options.show_progress = false;
+    CandidateListOptions options{.search = extended_search_options(), .show_progress = false};
     const std::vector<CandidateList> with = enumerate_candidates(set, options);
     options.search.step_scores = nullptr;
     const std::vector<CandidateList> without = enumerate_candidates(set, options);
@@ -272,8 +262,7 @@ TEST(CandidateLists, AreBetterWhereABeamSearchLeads) {
     EXPECT_GT(gained / static_cast<double>(with.size()), 0.003);
 }
 
-// A straight lane, cones 4 m apart, of which the car sees 32 m; a false positive stands 1.5 m off its left
-// boundary.
+// A straight lane, cones 4 m apart, of which the car sees 32 m; a false one is 1.5 m off its left boundary.
 TEST(CandidateLists, SayWhichLanesCanBeDrivenByAsTheScoringDoes) {
     SceneSet set;
     TrackBoundaries& boundaries = set.tracks["straight"];
@@ -292,8 +281,7 @@ TEST(CandidateLists, SayWhichLanesCanBeDrivenByAsTheScoringDoes) {
     }
     scene.scene.cones.push_back({100, {9.0, 3.5}});  // beside the third left cone
     set.scenes.push_back(scene);
-    CandidateListOptions options;
-    options.show_progress = false;
+    CandidateListOptions options{.show_progress = false};
     const std::vector<CandidateList> lists = enumerate_candidates(set, options);
     ASSERT_EQ(lists.size(), 1u);
 
@@ -317,9 +305,7 @@ TEST(CandidateLists, SayWhichLanesCanBeDrivenByAsTheScoringDoes) {
     EXPECT_EQ(usable({0, 2, 100, 6, 8, 10, 12, 14, 16}, {1, 3, 5, 7, 9, 11, 13, 15, 17}), false)
         << "past the false positive";
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        LaneAnswer answer;
-        answer.status = LaneStatus::found;
-        answer.lane = search.lane(pairs[i], scene.scene);
+        LaneAnswer answer{.status = LaneStatus::found, .lane = search.lane(pairs[i], scene.scene)};
         const SceneScore scored = score(scene, answer, 0.0, std::nullopt, &boundaries);
         EXPECT_EQ(lists.front().usable[i], scored.usable()) << "candidate " << i;
     }

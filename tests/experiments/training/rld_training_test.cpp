@@ -107,8 +107,7 @@ TEST(RldTraining, WhatALimitHoldsIsPushedOnlyAwayFromIt) {
     LearnedCosts costs = shape_as_learned_costs();
     costs.of(LearnedPart::turn).linear[0] = -50.0;
     costs.of(LearnedPart::far_end).linear[0] = 50.0;
-    RldParameters parameters;
-    parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
+    RldParameters parameters{.learned_costs = std::make_shared<const LearnedCosts>(costs)};
     Scene scene;
     LaneGraphProblem problem;
     RldReport best;

@@ -9,18 +9,12 @@ namespace conelane::experiments {
 namespace {
 
 SceneSet scenes(const std::string& track, double every_m, double rate = 0.4) {
-    SceneOptions options;
-    options.false_positive_rates = {rate};
-    options.ranges_m = {30.0};
-    options.every_m = every_m;
+    SceneOptions options{.false_positive_rates = {rate}, .ranges_m = {30.0}, .every_m = every_m};
     return make_scene_set({track}, options);
 }
 
 StepScoreTrainingOptions quick() {
-    StepScoreTrainingOptions options;
-    options.epochs = 2;
-    options.show_progress = false;
-    return options;
+    return StepScoreTrainingOptions{.epochs = 2, .show_progress = false};
 }
 
 StepScores untrained() {
@@ -54,8 +48,7 @@ TEST(StepScoreTraining, GivesTheSameScoresAgainAndOthersFromAnotherSeed) {
 }
 
 TEST(StepScoreTraining, ABeamAsWideAsTheSceneKeepsEveryLane) {
-    CandidateSearchOptions search;
-    search.beam_width = 100'000;
+    CandidateSearchOptions search{.beam_width = 100'000};
     const StepScoreFigures figures =
         step_score_figures(scenes("generated:circle@1", 30.0, 0.0), untrained(), search);
     EXPECT_GT(figures.scenes, 0u);

@@ -12,14 +12,8 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::HasSubstr;
-
 SceneSet few_scenes() {
-    SceneOptions options;
-    options.false_positive_rates = {0.0, 0.3};
-    options.ranges_m = {30.0};
-    options.every_m = 60.0;
-    options.seed = 1;
+    SceneOptions options{.false_positive_rates = {0.0, 0.3}, .ranges_m = {30.0}, .every_m = 60.0, .seed = 1};
     return make_scene_set({"generated:curvy"}, options);
 }
 
@@ -49,10 +43,8 @@ TEST(DetectorTuning, FindsBetterParametersAndTheSameOnesAgain) {
 
 /// A value for each parameter: one of its members.
 std::vector<double> values_of(const DetectorRecipe& recipe, double TunableParameter::*member) {
-    std::vector<double> values;
-    for (const TunableParameter& parameter : recipe.tuned()->parameters())
-        values.push_back(parameter.*member);
-    return values;
+    return mapped(recipe.tuned()->parameters(),
+                  [&](const TunableParameter& parameter) { return parameter.*member; });
 }
 
 TEST(DetectorTuning, ShippedParametersAreInTheirRanges) {
@@ -104,9 +96,8 @@ TEST_F(TuneDetector, WritesParametersAndTheirRecord) {
     EXPECT_NO_THROW(
         (void)parse_values(find_tunable("delaunay-beam"), text_of(path("p.json")), path("p.json")));
     const std::string record = text_of(path("p.record.json"));
-    for (const char* key : {R"("method": "delaunay-beam")", "generated:circle", R"("evaluations": 3)"}) {
+    for (const char* key : {R"("method": "delaunay-beam")", "generated:circle", R"("evaluations": 3)"})
         EXPECT_THAT(record, HasSubstr(key));
-    }
 }
 
 TEST_F(TuneDetector, BadOptionsAreRefused) {

@@ -1,5 +1,4 @@
-// What `front` makes of covariances of positions: nothing where they are 0, wider rules and shorter trust
-// elsewhere.
+// What `front` makes of covariances: nothing where they are 0, wider rules and shorter trust elsewhere.
 
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_moves.hpp"

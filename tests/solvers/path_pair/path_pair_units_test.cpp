@@ -25,9 +25,8 @@ struct SceneWithMultipliers {
         residual.assign(graph, tests::near_to_far(graph).kinds[0].start, clock);
         multipliers.cone.assign(cones, 0.0);
         boost::random::mt19937_64 random(seed);
-        for (double& multiplier : multipliers.cone) {
+        for (double& multiplier : multipliers.cone)
             multiplier = boost::random::uniform_real_distribution<double>(0.0, 0.5)(random);
-        }
         do {
             reduce(graph, cliques, multipliers, residual, edge_multiplier, reduced);
             start.clear();
@@ -60,9 +59,8 @@ struct SceneWithMultipliers {
             used[head] = 1;
             leg.push_back(a);
             if (end[at] < kUnreachable) visit(leg, cost + end[at]);
-            for (int p = residual.out_start[at]; p < residual.out_start[at + 1]; ++p) {
+            for (int p = residual.out_start[at]; p < residual.out_start[at + 1]; ++p)
                 extend(residual.out_arc[to_index(p)], cost + residual.out_cost[to_index(p)]);
-            }
             leg.pop_back();
             used[head] = 0;
         };
@@ -137,9 +135,7 @@ TEST(PathPairIncumbent, TakesNoLaneGraphWithoutTwoFarEndsThatFit) {
 
 /// Even if they have no cost: (5) allows a cone at most two edges.
 TEST(PathPairIncumbent, TakesNoLegsThatPassOneCone) {
-    RldParameters parameters;
-    parameters.t_crit = 1e6;
-    parameters.d_min = 0.1;
+    RldParameters parameters{.d_min = 0.1, .t_crit = 1e6};
     Offers lane(six_cone_lane(), parameters);
     lane.incumbent.set_cutoff(1e6);
     EXPECT_FALSE(lane.offer({0, 1, 2}, {3, 1, 5}));
@@ -147,8 +143,7 @@ TEST(PathPairIncumbent, TakesNoLegsThatPassOneCone) {
 }
 
 TEST(PathPairIncumbent, PaysForEveryTurn) {
-    RldParameters parameters;
-    parameters.t_crit = 1e6;
+    RldParameters parameters{.t_crit = 1e6};
     const Offers lane(six_cone_lane(), parameters);
     const double corner = 0.5 * std::pow(std::numbers::pi / 2.0 / 0.9, 4);
     const double across = lane.incumbent.leg_cost(lane.leg({1, 4}));
@@ -156,9 +151,7 @@ TEST(PathPairIncumbent, PaysForEveryTurn) {
 }
 
 TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
-    RldParameters parameters;
-    parameters.t_crit = 1e6;
-    parameters.d_min = 1.0;
+    RldParameters parameters{.d_min = 1.0, .t_crit = 1e6};
     EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 2})) << "both legs end at 2";
     parameters = {};
     parameters.d_min = 3.6;
@@ -172,12 +165,11 @@ TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
 
 /// For one boundary alone: each cone has half of its edges, and its turn.
 TEST(PathPairArcGraph, SharesOfConesAddUpToTheLane) {
-    LaneGraphProblem problem;
+    LaneGraphProblem problem;  // GCC warns falsely of a member where all are named in braces
     problem.cone_count = 3;
     problem.near = {true, true, false};
-    for (const std::size_t i : {0U, 1U}) {
+    for (const std::size_t i : {0U, 1U})
         problem.edges.push_back({i, i + 1, 0.0, 0.0, 0.0, 0.0, -1.0, true, false});
-    }
     problem.turns.push_back({0, 1, 1, 0.0, 0.0, 0.25, false});
     ArcGraph graph;
     SearchClock clock;
@@ -218,8 +210,7 @@ TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
     }
 }
 
-/// Earlier walks are only a start: labels are the same from the walks of other costs, of another graph, and
-/// from none.
+/// Earlier walks are only a start: labels are the same from walks of other costs or graphs, and from none.
 TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
     SearchClock clock;
     LegBounds bounds(clock);
@@ -247,12 +238,9 @@ TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
     EXPECT_GT(started, 500);
 }
 
-/// A loop over a far square of cones costs less than 0: its multipliers rise until it costs 0, and no
-/// further.
+/// A loop over a far square of cones costs less than 0: its multipliers rise just until it costs 0.
 TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
-    RldParameters parameters;
-    parameters.theta_t = 2.0;
-    parameters.t_crit = 100.0;
+    RldParameters parameters{.theta_t = 2.0, .t_crit = 100.0};
     Scene scene = tests::cones_at({{4, 0}, {7.2, 0}, {7.2, 3.2}, {4, 3.2}});
     ArcGraph graph;
     SearchClock clock;
@@ -329,9 +317,8 @@ TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
         const std::size_t edges = to_index(s.graph.edge_count());
         boost::random::mt19937_64 random(seed);
         std::vector<double> use;
-        for (std::size_t e = 0; e < edges; ++e) {
+        for (std::size_t e = 0; e < edges; ++e)
             use.push_back(boost::random::uniform_real_distribution<double>(0.0, 1.0)(random));
-        }
         CliquePool pool;
         CliqueSeparation separation;
         SearchClock clock;
@@ -345,9 +332,8 @@ TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
                 for (const int f : clique) ASSERT_TRUE(e == f || s.graph.incompatible(e, f));
             }
             EXPECT_GT(sum, 1.0);
-            for (int e = 0; e < s.graph.edge_count(); ++e) {
+            for (int e = 0; e < s.graph.edge_count(); ++e)
                 EXPECT_FALSE(std::ranges::all_of(clique, [&](int f) { return s.graph.incompatible(e, f); }));
-            }
         }
     }
     EXPECT_GT(found, 100);
