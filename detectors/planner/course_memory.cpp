@@ -24,21 +24,21 @@ constexpr double kBeside_m = 1.0;          ///< along the lane: a cone is beside
 constexpr double kSameNoted_m = 0.3;
 constexpr double kSameStranger_m = 0.5;
 
-/// Sets the arc lengths of a closed lane, from chords, and its length.
-void measure(DrivableLane& ring) {
-    ring.closed = true;
-    ring.length_m = 0.0;
-    for (std::size_t i = 0; i < ring.points.size(); ++i) {
-        ring.points[i].s_m = ring.length_m;
-        const Point& next = ring.points[(i + 1) % ring.points.size()].position;
-        ring.length_m += (next - ring.points[i].position).norm();
+/// Sets the arc lengths, from chords, and the length of a lane.
+void measure(DrivableLane& lane) {
+    lane.length_m = 0.0;
+    for (std::size_t i = 0; i < lane.points.size(); ++i) {
+        if (i > 0) lane.length_m += (lane.points[i].position - lane.points[i - 1].position).norm();
+        lane.points[i].s_m = lane.length_m;
     }
+    if (lane.closed) lane.length_m += (lane.points.front().position - lane.points.back().position).norm();
 }
 
 /// The recorded points as a closed lane. Where the newest ones do not meet the oldest ones, these are moved,
 /// less and less with the distance.
 DrivableLane closed_lane(const std::vector<DrivablePoint>& recorded) {
     DrivableLane ring;
+    ring.closed = true;
     ring.points = recorded;
     const Pose from = pose_of(recorded.back());
     const Point seam =
@@ -52,26 +52,28 @@ DrivableLane closed_lane(const std::vector<DrivablePoint>& recorded) {
 }
 
 /// The same lane by a spline near points at about `step_m`, sampled finely.
-DrivableLane smoothed(const DrivableLane& ring, double step_m) {
-    const auto half = static_cast<std::size_t>(std::max(2.0, std::round(ring.length_m / step_m / 2.0)));
-    const std::size_t count = 2 * half;  // an even number, as the spline asks
-    const double spacing_m = ring.length_m / static_cast<double>(count);
+DrivableLane smoothed(const DrivableLane& lane, double step_m) {
+    // The spline asks for an even number of points of a closed lane, and for an odd one of an open lane.
+    const auto half = static_cast<std::size_t>(std::max(2.0, std::round(lane.length_m / step_m / 2.0)));
+    const double spacing_m = lane.length_m / static_cast<double>(2 * half);
     std::vector<Point> places;
-    for (std::size_t i = 0; i < count; ++i) {
-        places.push_back(point_at(ring, static_cast<double>(i) * spacing_m).position);
+    for (std::size_t i = 0; i < 2 * half + (lane.closed ? 0 : 1); ++i) {
+        places.push_back(point_at(lane, static_cast<double>(i) * spacing_m).position);
     }
-    const std::vector<double> weights(count, 1.0);
-    SmoothingSpline spline(places, weights, spacing_m, kSmoothing_m, true);
+    const std::vector<double> weights(places.size(), 1.0);
+    SmoothingSpline spline(places, weights, spacing_m, kSmoothing_m, lane.closed);
     for (int round = 0; round < 2; ++round) {
-        spline = SmoothingSpline(places, weights, spacing_m, kSmoothing_m, true, spline.turning_1pm(0.5));
+        spline =
+            SmoothingSpline(places, weights, spacing_m, kSmoothing_m, lane.closed, spline.turning_1pm(0.5));
     }
     constexpr int kFiner = 4;
     DrivableLane fine;
-    for (std::size_t i = 0; i < kFiner * count; ++i) {
+    fine.closed = lane.closed;
+    for (std::size_t i = 0; i < kFiner * 2 * half + (lane.closed ? 0 : 1); ++i) {
         const double at_m = static_cast<double>(i) * spacing_m / kFiner;
         const SmoothingSpline::Jet jet = spline.at(at_m);
         const double speed = jet.first.norm();
-        DrivablePoint point = point_at(ring, at_m);
+        DrivablePoint point = point_at(lane, at_m);
         point.position = jet.position;
         point.heading_rad = turning_angle({1.0, 0.0}, jet.first);
         point.curvature_1pm = speed > 0.0 ? cross(jet.first, jet.second) / (speed * speed * speed) : 0.0;
@@ -81,17 +83,12 @@ DrivableLane smoothed(const DrivableLane& ring, double step_m) {
     return fine;
 }
 
-/// The same lane at equal steps that divide it.
+/// The same closed lane at equal steps that divide it.
 DrivableLane evenly_spaced(const DrivableLane& ring, double step_m) {
-    DrivableLane even;
+    const double even_m = ring.length_m / std::max(3.0, std::round(ring.length_m / step_m));
+    DrivableLane even = stretch(ring, 0.0, ring.length_m - even_m / 2.0, even_m);
     even.closed = true;
     even.length_m = ring.length_m;
-    const auto steps = static_cast<std::size_t>(std::max(3.0, std::round(ring.length_m / step_m)));
-    for (std::size_t i = 0; i < steps; ++i) {
-        const double s_m = static_cast<double>(i) * (ring.length_m / static_cast<double>(steps));
-        even.points.push_back(point_at(ring, s_m));
-        even.points.back().s_m = s_m;
-    }
     return even;
 }
 
@@ -106,32 +103,19 @@ void CourseMemory::record(const DrivableLane& lane, const ConeMemory& cones) {
     if (lane.points.empty()) return;
     const DrivablePoint& here = lane.points.front();
     if (!points_.empty()) {
-        const DrivablePoint& last = points_.back();
-        const double on_m = pose_of(last).ahead_m(here.position);
+        const DrivablePoint last = points_.back();
         const double gap_m = (here.position - last.position).norm();
         if (gap_m > kMaxGap_m) {
             points_.clear();
             noted_.clear();
             closed_ = false;
-        } else if (on_m < settings_.step_m) {
+        } else if (pose_of(last).ahead_m(here.position) < settings_.step_m) {
             return;
-        } else {
-            const auto parts = static_cast<int>(std::ceil(gap_m / settings_.step_m - 0.5));
-            const DrivablePoint from = last;
-            for (int i = 1; i < parts; ++i) {
-                const double share = static_cast<double>(i) / parts;
-                DrivablePoint point = here;
-                point.position = from.position + share * (here.position - from.position);
-                point.heading_rad = from.heading_rad + share * turn_rad(from.heading_rad, here.heading_rad);
-                point.width_left_m = std::lerp(from.width_left_m, here.width_left_m, share);
-                point.width_right_m = std::lerp(from.width_right_m, here.width_right_m, share);
-                append(point);
-                note_cones(points_.back(), cones);
-            }
         }
+        const double parts = points_.empty() ? 0.0 : std::ceil(gap_m / settings_.step_m - 0.5);
+        for (double i = 1.0; i < parts; ++i) append(between(last, here, i / parts), cones);
     }
-    append(here);
-    note_cones(points_.back(), cones);
+    append(here, cones);
     if (closed_) {
         drop_passed(here);
     } else {
@@ -139,11 +123,12 @@ void CourseMemory::record(const DrivableLane& lane, const ConeMemory& cones) {
     }
 }
 
-void CourseMemory::append(const DrivablePoint& point) {
+void CourseMemory::append(const DrivablePoint& point, const ConeMemory& cones) {
     const double s_m =
         points_.empty() ? 0.0 : points_.back().s_m + (point.position - points_.back().position).norm();
     points_.push_back(point);
     points_.back().s_m = s_m;
+    note_cones(points_.back(), cones);
     const double first_kept_m = s_m - settings_.max_length_m;
     if (points_.front().s_m >= first_kept_m) return;
     std::erase_if(points_, [&](const DrivablePoint& old) { return old.s_m < first_kept_m; });
@@ -306,26 +291,15 @@ std::optional<DrivableLane> CourseMemory::course() const {
 DrivableLane CourseMemory::ahead(const Pose& pose, double length_m) const {
     if (!closed_ || points_.size() < 8) return {};
     DrivableLane lane;
-    const double begin_m = points_.front().s_m;
-    for (const DrivablePoint& point : points_) {
-        if (point.s_m - begin_m > length_m) break;
-        lane.points.push_back(point);
-        lane.points.back().s_m -= begin_m;
-    }
-    lane.length_m = lane.points.back().s_m;
+    lane.points = points_;
+    std::erase_if(lane.points,
+                  [&](const DrivablePoint& point) { return point.s_m > points_.front().s_m + length_m; });
     move(lane.points, laid_);
-    // The first point may lie a little ahead of the car, where the record has just been cut.
-    DrivablePoint begin = lane.points.front();
-    const double before_m = -pose_of(begin).ahead_m(pose.position);
-    if (before_m > 0.0 && before_m < kPassed_m) {
-        for (DrivablePoint& point : lane.points) point.s_m += before_m;
-        begin.position -= before_m * pose_of(begin).heading();
-        lane.points.insert(lane.points.begin(), begin);
-        lane.length_m += before_m;
-    }
+    lane.points.insert(lane.points.begin(), points_.back());  // where the car was in the frame before
+    measure(lane);
     const auto foot = foot_on(lane, pose, 0.0, 2.0 * kPassed_m);
     if (!foot || foot->offset_m > settings_.line_half_width_m) return {};
-    return stretch(lane, foot->s_m, lane.length_m, step_m_);
+    return stretch(smoothed(lane, settings_.step_m), foot->s_m, lane.length_m, step_m_);
 }
 
 }  // namespace conelane

@@ -61,7 +61,7 @@ class CourseMemory {
         int unseen = 0;  ///< frames since
     };
     void find_strangers(const Frame& frame);
-    void append(const DrivablePoint& point);
+    void append(const DrivablePoint& point, const ConeMemory& cones);
     void close(const DrivableLane& lane);
     void drop_passed(const DrivablePoint& at);
     void note_cones(const DrivablePoint& here, const ConeMemory& cones);

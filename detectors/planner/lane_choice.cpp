@@ -69,13 +69,6 @@ bool LaneChoice::agrees(const DrivableLane& lane, const DrivableLane& left) cons
     return is_spent(left) || jump_m(lane, left, settings_.near_m) <= settings_.jump_m;
 }
 
-const DrivableLane& LaneChoice::reference(const DrivableLane& fresh, const DrivableLane& left,
-                                          const DrivableLane& course) const {
-    if (!agrees(fresh, course) || !agrees(left, course)) return course;
-    const double from_fresh_m = jump_m(fresh, course, settings_.near_m);
-    return jump_m(left, course, settings_.near_m) < from_fresh_m ? left : course;
-}
-
 bool LaneChoice::is_on(const DrivableLane& course, const DrivableLane& left) const {
     return !is_spent(course) && !left.points.empty() &&
            jump_m(left, course, settings_.on_course_m) <= settings_.on_course_offset_m;

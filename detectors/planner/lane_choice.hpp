@@ -64,11 +64,6 @@ class LaneChoice {
     /// Whether a lane continues the one driven so far, or too little of that one is left. `left`: the rest of
     /// the lane driven so far; without points there is none.
     [[nodiscard]] bool agrees(const DrivableLane& lane, const DrivableLane& left) const;
-    /// The lane that `fresh` is compared with in later laps: `course`, the one of the lap before, or `left`
-    /// if both are on the course and `left` is nearer to it. A lane that leaves `left` for the edge of what
-    /// agrees with the course then has to be confirmed as in the first lap.
-    [[nodiscard]] const DrivableLane& reference(const DrivableLane& fresh, const DrivableLane& left,
-                                                const DrivableLane& course) const;
     /// Whether a car at the beginning of `left` is on `course`, the one of the lap before, however far the
     /// two part ahead. It is not on a course without a rest.
     [[nodiscard]] bool is_on(const DrivableLane& course, const DrivableLane& left) const;

@@ -1,6 +1,5 @@
 #include "detectors/planner/lane_stretch.hpp"
 
-#include "detectors/drivable/smoothing_spline.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
@@ -30,9 +29,8 @@ constexpr double kJoinBend_m = 2.0;  ///< before its beginning the line turns fr
 constexpr double kExtendOffset_m = 0.5;
 constexpr double kExtendTurn_rad = 0.35;
 constexpr double kFine_m = 0.1;
-constexpr double kClothoid_m = 2.0;    ///< before and behind a point, for its curvature
+constexpr double kCurvatureOver_m = 4.0;
 constexpr double kFarAside_m = 6.0;    ///< nothing farther is beside a point of a lane
-constexpr double kSharpest_1pm = 0.5;  ///< curvature that smoothing keeps
 constexpr double kSteadyShare = 0.5;   ///< of the way to the lane driven so far
 constexpr double kSteadyFull_m = 0.5;  ///< apart: up to here all of the share, at kSteadyNone_m nothing
 constexpr double kSteadyNone_m = 0.9;
@@ -42,18 +40,6 @@ constexpr double kSteadySide_m = 1.0;  ///< to a boundary: no nearer
 
 Point direction(double heading_rad) {
     return {std::cos(heading_rad), std::sin(heading_rad)};
-}
-
-DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share) {
-    DrivablePoint point;
-    point.s_m = std::lerp(a.s_m, b.s_m, share);
-    point.position = a.position + share * (b.position - a.position);
-    point.heading_rad = std::remainder(a.heading_rad + share * turn_rad(a.heading_rad, b.heading_rad),
-                                       2.0 * std::numbers::pi);
-    point.curvature_1pm = std::lerp(a.curvature_1pm, b.curvature_1pm, share);
-    point.width_left_m = std::lerp(a.width_left_m, b.width_left_m, share);
-    point.width_right_m = std::lerp(a.width_right_m, b.width_right_m, share);
-    return point;
 }
 
 /// What a lane knows of its boundaries, for a part of it whose arc lengths are larger by `by_m`.
@@ -93,30 +79,6 @@ void derive(std::vector<DrivablePoint>& points, std::size_t from, std::size_t to
         points[i].heading_rad = turning_angle({1.0, 0.0}, c - a);
         const double product_m3 = (b - a).norm() * (c - b).norm() * (c - a).norm();
         points[i].curvature_1pm = product_m3 > 1e-9 ? 2.0 * cross(b - a, c - b) / product_m3 : 0.0;
-    }
-}
-
-/// The slope of the headings within kClothoid_m of each point, by least squares: the mean curvature there of
-/// the clothoid that fits best.
-void derive_curvatures(std::vector<DrivablePoint>& points) {
-    std::vector<double> turned_rad(points.size(), 0.0);
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        turned_rad[i] = turned_rad[i - 1] + turn_rad(points[i - 1].heading_rad, points[i].heading_rad);
-    }
-    std::size_t from = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        while (points[from].s_m < points[i].s_m - kClothoid_m) ++from;
-        double n = 0.0, s = 0.0, ss = 0.0, t = 0.0, st = 0.0;
-        for (std::size_t k = from; k < points.size() && points[k].s_m <= points[i].s_m + kClothoid_m; ++k) {
-            const double s_m = points[k].s_m - points[i].s_m;
-            n += 1.0;
-            s += s_m;
-            ss += s_m * s_m;
-            t += turned_rad[k];
-            st += s_m * turned_rad[k];
-        }
-        const double spread = n * ss - s * s;
-        points[i].curvature_1pm = spread > 1e-9 ? (n * st - s * t) / spread : 0.0;
     }
 }
 
@@ -194,6 +156,18 @@ std::vector<DrivablePoint> leading_to(const DrivablePoint& beginning, const Driv
 
 double turn_rad(double from_rad, double to_rad) {
     return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+}
+
+DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share) {
+    DrivablePoint point;
+    point.s_m = std::lerp(a.s_m, b.s_m, share);
+    point.position = a.position + share * (b.position - a.position);
+    point.heading_rad = std::remainder(a.heading_rad + share * turn_rad(a.heading_rad, b.heading_rad),
+                                       2.0 * std::numbers::pi);
+    point.curvature_1pm = std::lerp(a.curvature_1pm, b.curvature_1pm, share);
+    point.width_left_m = std::lerp(a.width_left_m, b.width_left_m, share);
+    point.width_right_m = std::lerp(a.width_right_m, b.width_right_m, share);
+    return point;
 }
 
 std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m, double to_s_m) {
@@ -331,30 +305,20 @@ double arc_length_beside(const DrivableLane& lane, const Point& place, double ou
     return std::numeric_limits<double>::infinity();
 }
 
-DrivableLane faired(const DrivableLane& lane, double smoothing_m) {
-    if (lane.points.size() < 5) return lane;
-    const std::size_t count = lane.points.size() - (lane.points.size() % 2 == 0 ? 1 : 0);  // odd, as it asks
-    const double spacing_m = lane.points[1].s_m - lane.points[0].s_m;
-    std::vector<Point> places;
-    for (std::size_t i = 0; i < count; ++i) places.push_back(lane.points[i].position);
-    const std::vector<double> weights(count, 1.0);
-    SmoothingSpline spline(places, weights, spacing_m, smoothing_m, false);
-    for (int round = 0; round < 2; ++round) {
-        spline = SmoothingSpline(places, weights, spacing_m, smoothing_m, false,
-                                 spline.turning_1pm(kSharpest_1pm));
+void even_curvatures(DrivableLane& lane) {
+    std::vector<double> turned_rad(lane.points.size(), 0.0);
+    for (std::size_t i = 1; i < turned_rad.size(); ++i) {
+        turned_rad[i] =
+            turned_rad[i - 1] + turn_rad(lane.points[i - 1].heading_rad, lane.points[i].heading_rad);
     }
-    std::vector<DrivablePoint> points = lane.points;  // an even last one stays as it is
-    for (std::size_t i = 0; i < count; ++i) {
-        const SmoothingSpline::Jet jet = spline.at(spacing_m * static_cast<double>(i));
-        const double left_m = pose_of(points[i]).left_m(jet.position);
-        points[i].position = jet.position;
-        points[i].heading_rad = turning_angle({1.0, 0.0}, jet.first);
-        points[i].width_left_m -= left_m;
-        points[i].width_right_m += left_m;
+    std::size_t from = 0;
+    std::size_t to = 0;
+    for (DrivablePoint& point : lane.points) {
+        while (lane.points[from].s_m < point.s_m - kCurvatureOver_m / 2.0) ++from;
+        while (to + 1 < turned_rad.size() && lane.points[to].s_m < point.s_m + kCurvatureOver_m / 2.0) ++to;
+        const double over_m = lane.points[to].s_m - lane.points[from].s_m;
+        if (over_m > 0.0) point.curvature_1pm = (turned_rad[to] - turned_rad[from]) / over_m;
     }
-    DrivableLane smooth = measured(std::move(points), spacing_m, lane);
-    derive_curvatures(smooth.points);
-    return smooth;
 }
 
 DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, double step_m) {

@@ -82,15 +82,9 @@ bool LapCounter::crosses(const Pose& line, const Pose& pose) const {
 std::optional<double> LapCounter::to_stop_line_m(const DrivableLane& lane) const {
     const bool is_at_end = finish_ && course_ends_ && !passed_finish_;
     if (laps_ >= laps_of_run_ || (!is_at_end && (laps_ + 1 < laps_of_run_ || !away_))) return std::nullopt;
-    const Pose& line = is_at_end ? *finish_ : line_;
-    for (std::size_t i = 1; i < lane.points.size(); ++i) {
-        const double before_m = line.ahead_m(lane.points[i - 1].position);
-        const double behind_m = line.ahead_m(lane.points[i].position);
-        if (before_m >= 0.0 || behind_m < 0.0) continue;
-        if (std::abs(line.left_m(lane.points[i].position)) > settings_.line_half_width_m) continue;
-        return std::lerp(lane.points[i - 1].s_m, lane.points[i].s_m, before_m / (before_m - behind_m));
-    }
-    return std::nullopt;
+    const auto foot = foot_on(lane, is_at_end ? *finish_ : line_, 0.0, lane.length_m);
+    const bool is_on = foot && foot->s_m > 0.0 && foot->s_m < lane.points.back().s_m;
+    return is_on && foot->offset_m <= settings_.line_half_width_m ? std::optional(foot->s_m) : std::nullopt;
 }
 
 bool LapCounter::nothing_ahead(const Pose& place, const ConeMemory& memory) {

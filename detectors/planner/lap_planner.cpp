@@ -24,9 +24,6 @@ void validate(const PlannerOptions& options) {
 
 constexpr LaneChoiceSettings kChoice;
 constexpr CourseSettings kCourse;
-/// Smoothing of what is joined of several lanes, each of which is smooth.
-constexpr double kFairing_m = 1.0;
-constexpr double kAtCar_m = 0.75;  ///< ahead of the car or behind it, where a path may begin
 
 /// Where two lanes from the car on part; infinite if one of them ends before.
 double parted_m(const DrivableLane& lane, const DrivableLane& other) {
@@ -59,8 +56,7 @@ struct Run {
     std::optional<double> time_s;
     Pose pose;  ///< of that time
     Plan last;
-    bool started = false;     ///< a lane was driven
-    bool off_course = false;  ///< what is seen has outweighed the course of the lap before
+    bool started = false;  ///< a lane was driven
 };
 
 class LapPlanner final : public Planner {
@@ -90,9 +86,9 @@ class LapPlanner final : public Planner {
     [[nodiscard]] Choice chosen_lane(const LaneAnswer& answer, const Scene& scene, const DrivableLane& left);
     [[nodiscard]] bool follow_course(const Choice& choice, const DrivableLane& left, Plan& plan,
                                      double& until_m);
-    void record(const DrivableLane& lane, const std::optional<DrivableLane>& fresh);
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
     void choose_path(const Choice& choice, const DrivableLane& left, Plan& plan, double until_m);
+    void keep_path(Plan& plan);
     void lead_out(Plan& plan) const;
     void finish(Plan& plan) const;
 
@@ -130,10 +126,17 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     const DrivableLane left = run_.path.left(frame.pose, frame.time_s);
     const Choice choice = chosen_lane(plan.answer, scene, left);
     double until_m = std::numeric_limits<double>::infinity();
-    if (!follow_course(choice, left, plan, until_m)) choose_path(choice, left, plan, until_m);
+    const bool on_course = follow_course(choice, left, plan, until_m);
+    if (!on_course) choose_path(choice, left, plan, until_m);
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
-    record(plan.lane, choice.fresh);
+    DrivableLane driven = plan.lane;
+    if (on_course && choice.fresh) {  // which corrects the course by half of what it shows beside the car
+        const DrivablePoint halfway = between(driven.points.front(), choice.fresh->points.front(), 0.5);
+        const double by_m = (halfway.position - driven.points.front().position).norm();
+        if (2.0 * by_m <= kChoice.jump_m) driven.points.front() = halfway;
+    }
+    run_.course.record(driven, run_.cones);
     run_.counter.observe(frame.pose, plan.lane, run_.cones);
     lead_out(plan);
     plan.stop_line_m = run_.counter.to_stop_line_m(plan.lane);
@@ -143,50 +146,36 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     return plan;
 }
 
-/// The path is the course of the lap before while the cones of this frame confirm it, nothing outweighs it,
-/// and the frame's own lane is not trusted farther. Returns false, with a reason, where it is not.
-/// `until_m` becomes the place where the frame contradicts the course, if it does.
+/// The path is the course of the lap before while the cones of this frame confirm it and the frame's own lane
+/// is not trusted farther. Returns false, with a reason, where it is not. `until_m` becomes the place where
+/// the frame contradicts the course, if it does.
 bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, Plan& plan, double& until_m) {
     if (!run_.course.closed()) return false;
     const DrivableLane course = run_.course.ahead(run_.pose, kChoice.known_ahead_m);
     LaneTrust trust = run_.course.trust(course);
-    if (run_.off_course) trust = {0.0, "another lane is more probable than the course"};
     if (choice.seen && !course.points.empty()) {
         const double contested = contested_m(*choice.seen, course);
         if (contested < trust.length_m) trust = {contested, "a trusted lane leaves the course"};
     }
+    if (trust.length_m > 0.0 && !left.points.empty() && !run_.choice.is_on(course, left))
+        trust = {0.0, "the car is not on the course"};
     plan.reason = trust.reason;
-    if (run_.off_course || course.points.size() < 2 || !run_.course.is_confirmed()) return false;
-    if (!left.points.empty() && !run_.choice.is_on(course, left)) {
-        plan.reason = "the car is not on the course";
-        return false;
-    }
+    if (trust.length_m <= 0.0 || !run_.course.is_confirmed()) return false;
     if (!trust.reason.empty()) until_m = trust.length_m;
     if (choice.fresh && choice.fresh->trusted_m.value_or(0.0) > trust.length_m) return false;
-    DrivableLane lane = faired(steadied(course, left, options_.drivable.step_m), kFairing_m);
-    if (std::abs(run_.pose.ahead_m(lane.points.front().position)) > kAtCar_m) return false;
-    plan.lane = std::move(lane);
-    plan.safe_m = std::min(run_.path.steady_trust_m(trust.length_m, until_m), plan.lane.length_m);
-    plan.lane.trusted_m = plan.safe_m;
-    plan.state = PlanState::following;
-    run_.path.remember(plan.lane, *run_.time_s);
+    plan.lane = steadied(course, left, options_.drivable.step_m);
+    plan.lane.trusted_m = std::min(run_.path.steady_trust_m(trust.length_m, until_m), plan.lane.length_m);
+    keep_path(plan);
     return true;
 }
 
-/// The course is corrected by half of what a frame shows beside the car.
-void LapPlanner::record(const DrivableLane& lane, const std::optional<DrivableLane>& fresh) {
-    DrivableLane recorded = lane;
-    if (fresh && !recorded.points.empty()) {
-        DrivablePoint& here = recorded.points.front();
-        const Pose pose = pose_of(here);
-        const double by_m = pose.left_m(fresh->points.front().position) / 2.0;
-        if (2.0 * std::abs(by_m) <= kChoice.jump_m) {
-            here.position += by_m * Point(-pose.heading().y(), pose.heading().x());
-            here.width_left_m -= by_m;
-            here.width_right_m += by_m;
-        }
-    }
-    run_.course.record(recorded, run_.cones);
+/// The path of this frame.
+void LapPlanner::keep_path(Plan& plan) {
+    even_curvatures(plan.lane);
+    run_.path.remember(plan.lane, *run_.time_s);
+    plan.state = PlanState::following;
+    plan.safe_m = *plan.lane.trusted_m;
+    run_.started = true;
 }
 
 /// `left`: the rest of the lane driven so far, which is trusted up to `until_m` at most.
@@ -202,22 +191,18 @@ void LapPlanner::choose_path(const Choice& choice, const DrivableLane& left, Pla
         if (plan.lane.length_m < std::max(kChoice.short_m, kept_m)) {
             plan.lane = extended(plan.lane, left, options_.drivable.step_m);
         }
-        plan.lane = faired(plan.lane, kFairing_m);
         plan.lane.trusted_m = std::min(kept_m, plan.lane.length_m);
-        run_.path.remember(plan.lane, *run_.time_s);
-        plan.state = PlanState::following;
-        run_.started = true;
+        keep_path(plan);
     } else if (!left.points.empty()) {
         plan.lane = left;
         if (seen) until_m = std::min(until_m, contested_m(*seen, plan.lane));
-        plan.lane.trusted_m = std::min(plan.lane.trusted_m.value_or(0.0), until_m);
+        plan.lane.trusted_m = plan.safe_m = std::min(plan.lane.trusted_m.value_or(0.0), until_m);
         plan.state = PlanState::bridging;
         plan.age_s = *run_.time_s - run_.path.time_s();
     } else {
         plan.state = run_.started ? PlanState::lost : PlanState::searching;
         if (run_.started) plan.reason = run_.path.why_none();
     }
-    plan.safe_m = plan.lane.trusted_m.value_or(0.0);
 }
 
 std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, const Scene& scene,
@@ -233,22 +218,14 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
 }
 
 /// The lane of a frame: the detector's answer if it continues the lane driven so far or outweighs it, else
-/// the most probable candidate that continues it; nothing without one. In later laps, the course known from
-/// the lap before replaces the lane driven so far, until it is outweighed, and a candidate that continues it.
+/// the most probable candidate that continues it; nothing without one.
 LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                            const DrivableLane& left) {
-    std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
-    if (!fresh) return {};
-    const DrivableLane seen = *fresh;
-    const DrivableLane course = run_.course.ahead(scene.pose, kChoice.course_ahead_m);
-    if (run_.off_course && run_.choice.agrees(*fresh, course)) run_.off_course = false;
-    const bool is_in_later_lap = !run_.off_course && !left.points.empty() && !course.points.empty();
-    const DrivableLane& before = is_in_later_lap ? run_.choice.reference(*fresh, left, course) : left;
-    const bool by_course = &before == &course;
-    const double weight = answer.confidence.value_or(kChoice.unsure_weight);
+    std::optional<DrivableLane> seen = fresh_lane(answer, scene, left);
+    if (!seen) return {};
     std::optional<DrivableLane> kept;
-    double kept_weight = by_course ? kChoice.course_weight : 0.0;
-    if (answer.enumeration && !run_.choice.agrees(*fresh, before)) {
+    double kept_weight = 0.0;
+    if (answer.enumeration && !run_.choice.agrees(*seen, left)) {
         double best = kChoice.min_kept_weight;
         for (const LaneCandidate& candidate : answer.enumeration->candidates) {
             const double probability = candidate.confidence.value_or(0.0);
@@ -257,22 +234,18 @@ LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene
             other.status = LaneStatus::found;
             other.lane = candidate.lane;
             std::optional<DrivableLane> lane = fresh_lane(other, scene, left);
-            if (!lane || !run_.choice.agrees(*lane, before)) continue;
+            if (!lane || !run_.choice.agrees(*lane, left)) continue;
             // Detectors say how far their answer is trusted. Of a candidate, what it shares with the trusted
             // rest of the lane driven so far is trusted.
             const double shared_m = common_m(*lane, left, kChoice.jump_m, kChoice.near_m);
             lane->trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
             kept = std::move(lane);
-            best = probability;
+            kept_weight = best = probability;
         }
-        if (kept) kept_weight += best;
     }
-    const bool agrees = run_.choice.agrees(*fresh, before);
-    if (!run_.choice.take(*fresh, before, weight, kept_weight)) {
-        return {seen, std::move(kept)};
-    }
-    if (by_course && !agrees) run_.off_course = true;
-    return {seen, std::move(fresh)};
+    const double weight = answer.confidence.value_or(kChoice.unsure_weight);
+    if (run_.choice.take(*seen, left, weight, kept_weight)) kept = seen;
+    return {std::move(seen), std::move(kept)};
 }
 
 LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {

@@ -40,10 +40,8 @@ struct LaneChoiceSettings {
     double short_m = 12.0;            ///< a shorter lane is extended by the one driven so far
     double unsure_weight = 0.4;       ///< weight of a frame whose detector gives no probability
     double min_kept_weight = 0.02;    ///< a less probable candidate does not count
-    double course_weight = 0.3;       ///< weight of the lap before, in each frame
     double on_course_m = 2.0;         ///< ahead of the car, where it is on the lap before or off it
     double on_course_offset_m = 0.6;  ///< and how far aside it may be there
-    double course_ahead_m = 20.0;     ///< length of the lap before that is compared
     double known_ahead_m = 50.0;      ///< length of the lap before that is driven by
     double min_left_m = 3.0;          ///< a lane with a shorter rest does not resist a new one
     double max_offset_m = 2.5;        ///< distance from car to path: farther away, the car is off it

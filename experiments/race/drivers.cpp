@@ -18,7 +18,7 @@ namespace {
 /// A path is due in 100 ms. The limit is longer, so that the wall clock does not influence answers.
 constexpr double kNoLimit_ms = 10'000.0;
 constexpr double kStopMargin_m = 0.5;     ///< tolerance for the driver `truth`, whose pose is noisy
-constexpr double kCurvatureOver_m = 2.0;  ///< length before and behind a point of the true line
+constexpr double kCurvatureOver_m = 4.0;  ///< length of the true line around a point
 
 void follow(const DrivableLane& lane, Drive& drive) {
     for (const DrivablePoint& point : lane.points) {
@@ -113,18 +113,6 @@ Driver planner_driver(const std::string& detector, const DetectorOptions& detect
     };
 }
 
-/// Of the true centre line at the point with this number [1/m].
-double curvature_at(const RaceCourse& course, long number) {
-    const auto count = static_cast<long>(course.line.size());
-    const long over = std::lround(kCurvatureOver_m / course.step_m);
-    const auto yaw_rad = [&](long i) {
-        const long kept = course.closed ? ((i % count) + count) % count : std::clamp(i, 0L, count - 1);
-        return course.line[static_cast<std::size_t>(kept)].yaw_rad;
-    };
-    const double turn_rad = yaw_rad(number + over) - yaw_rad(number - over);
-    return std::remainder(turn_rad, 2.0 * std::numbers::pi) / (2.0 * kCurvatureOver_m);
-}
-
 bool is_of_library(const Method& method) {
     return std::ranges::any_of(detector_recipes(),
                                [&](const DetectorRecipe& recipe) { return &recipe == method.recipe; });
@@ -173,11 +161,15 @@ Driver truth_driver(const RaceCourse& course, int laps, double ahead_m) {
         }
         Drive drive;
         const auto first = static_cast<long>(std::floor(at.at_m() / course.step_m));
-        for (long i = 0; i <= static_cast<long>(ahead_m / course.step_m); ++i) {
-            const std::optional<Point> point = at.place(first + i);
-            if (!point) continue;
-            drive.path.push_back(*point);
-            drive.curvature_1pm.push_back(curvature_at(course, first + i));
+        const long half = std::lround(kCurvatureOver_m / 2.0 / course.step_m);
+        for (long i = first; i <= first + static_cast<long>(ahead_m / course.step_m); ++i) {
+            const std::optional<Pose> here = at.place(i);
+            if (!here) continue;
+            drive.path.push_back(here->position);
+            const double from_rad = at.place(i - half).value_or(*here).yaw_rad;
+            const double turned_rad = at.place(i + half).value_or(*here).yaw_rad - from_rad;
+            drive.curvature_1pm.push_back(std::remainder(turned_rad, 2.0 * std::numbers::pi) /
+                                          kCurvatureOver_m);
         }
         drive.stop = at.at_m() >= *finish_m;
         return drive;

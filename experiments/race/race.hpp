@@ -90,8 +90,10 @@ enum class RaceEnd {
 
 /// The first lap of a race, or the others.
 struct LapFigures {
-    int laps = 0;             ///< that were completed
-    double time_s = 0.0;      ///< of those
+    int laps = 0;         ///< that were completed
+    double time_s = 0.0;  ///< of those
+    /// Time of one lap of the same car, if it knows its pose and the course; absent: not measured.
+    std::optional<double> known_lap_s = {};
     int frames = 0;           ///< with a path
     int short_frames = 0;     ///< trusted for less than 3 m, also those without a path
     int wrong_trusted = 0;    ///< frames whose path leaves the lane where it is trusted
@@ -99,6 +101,10 @@ struct LapFigures {
     /// Of the path 5 m ahead, from the frame before; 95 of 100 are smaller.
     std::optional<double> sideways_p95_m = {};
     double max_curvature_1pm = 0.0;  ///< of the first 10 m of a path
+
+    [[nodiscard]] std::optional<double> time_ratio() const {
+        return laps > 0 && known_lap_s ? std::optional(time_s / laps / *known_lap_s) : std::nullopt;
+    }
 };
 
 struct RaceResult {

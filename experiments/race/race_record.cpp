@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -28,22 +29,17 @@ Row row_of(const Heat& heat) {
 }
 
 /// The races of each key, in the order in which keys first occur.
-template <typename Of, typename Taken>
-auto grouped(std::span<const Heat> heats, const Of& of, const Taken& taken) {
-    using Results = std::vector<decltype(taken(heats.front()))>;
+template <typename Of>
+auto grouped(std::span<const Heat> heats, const Of& of) {
+    using Results = std::vector<const RaceResult*>;
     std::vector<std::pair<decltype(of(heats.front())), Results>> groups;
     for (const Heat& heat : heats) {
         const auto key = of(heat);
         auto group = std::ranges::find_if(groups, [&](const auto& other) { return other.first == key; });
         if (group == groups.end()) group = groups.insert(group, {key, {}});
-        group->second.push_back(taken(heat));
+        group->second.push_back(&heat.result);
     }
     return groups;
-}
-
-template <typename Of>
-auto grouped(std::span<const Heat> heats, const Of& of) {
-    return grouped(heats, of, [](const Heat& heat) { return &heat.result; });
 }
 
 /// The numbers of the races that have one.
@@ -166,31 +162,22 @@ std::string speed_table(std::span<const Heat> heats) {
                      {"trusted, wrong %"},
                      {"sideways p95 m"},
                      {"curvature 1/m"}});
-    for (const auto& [row, races] : grouped(heats, row_of, [](const Heat& heat) { return &heat; })) {
+    for (const auto& [row, races] : grouped(heats, row_of)) {
         for (const std::size_t later : {0U, 1U}) {
-            Sample ratios;
-            Sample sideways_m;
-            Sample curvatures_1pm;
-            std::size_t frames = 0;
-            std::size_t in_short = 0;
-            std::size_t right = 0;
-            std::size_t wrong = 0;
-            for (const Heat* heat : races) {
-                const LapFigures& lap = heat->result.by_lap[later];
-                if (lap.frames == 0) continue;
-                if (lap.laps > 0) ratios.add(lap.time_s / lap.laps / heat->known_lap_s.value()[later]);
-                sideways_m.add(lap.sideways_p95_m);
-                curvatures_1pm.add(lap.max_curvature_1pm);
-                frames += static_cast<std::size_t>(lap.frames);
-                in_short += static_cast<std::size_t>(lap.short_frames);
-                right += static_cast<std::size_t>(lap.right_untrusted);
-                wrong += static_cast<std::size_t>(lap.wrong_trusted);
-            }
-            if (frames == 0) continue;
+            const auto of_lap = [later](const auto& of) {
+                return [later, of](const RaceResult& r) { return std::invoke(of, r.by_lap[later]); };
+            };
+            const double frames = sum(races, of_lap(&LapFigures::frames));
+            if (frames == 0.0) continue;
+            const auto of_frames = [&](int LapFigures::*count) {
+                return percent(sum(races, of_lap(count)) / frames, 2);
+            };
             table.add({row.first, fmt::format("{}", row.second), later > 0 ? "later" : "first",
-                       fixed(ratios.mean(), 3), percent(share(in_short, frames), 2),
-                       percent(share(right, frames), 2), percent(share(wrong, frames), 2),
-                       fixed(sideways_m.mean(), 3), fixed(curvatures_1pm.median(), 2)});
+                       fixed(known(races, of_lap(&LapFigures::time_ratio)).mean(), 3),
+                       of_frames(&LapFigures::short_frames), of_frames(&LapFigures::right_untrusted),
+                       of_frames(&LapFigures::wrong_trusted),
+                       fixed(known(races, of_lap(&LapFigures::sideways_p95_m)).mean(), 3),
+                       fixed(known(races, of_lap(&LapFigures::max_curvature_1pm)).median(), 2)});
         }
     }
     return table.text();
@@ -230,11 +217,11 @@ Json heat_json(const Heat& heat) {
                  {"laps_told", r.laps_told}});
     if (!r.phases.empty()) json["phases"] = r.phases;
     for (const std::size_t later : {0U, 1U}) {
-        if (!heat.known_lap_s) break;
         const LapFigures& lap = r.by_lap[later];
+        if (!lap.known_lap_s) break;
         json[later > 0 ? "later_laps" : "first_lap"] = {{"laps", lap.laps},
                                                         {"time_s", lap.time_s},
-                                                        {"known_course_lap_s", (*heat.known_lap_s)[later]},
+                                                        {"known_course_lap_s", *lap.known_lap_s},
                                                         {"frames", lap.frames},
                                                         {"short_frames", lap.short_frames},
                                                         {"right_untrusted", lap.right_untrusted},

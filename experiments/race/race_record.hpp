@@ -2,8 +2,6 @@
 
 #include "experiments/race/race.hpp"
 
-#include <array>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,8 +17,6 @@ struct Heat {
     double false_positive_rate = 0.0;
     std::uint64_t seed = 0;
     RaceResult result = {};
-    /// By a car that knows the course, if the speed follows the trust: its first lap, and a later one.
-    std::optional<std::array<double, 2>> known_lap_s = {};
 };
 
 /// A row for each detector and share of false positives, in the order in which they first occur; then, for

@@ -16,7 +16,6 @@
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -90,15 +89,15 @@ struct WeightedCourse {
     std::shared_ptr<const WeightsBytes> weights = {};
 };
 
-/// The times of a first lap and of a later one by the same car, if it knows its pose and the course.
-std::array<double, 2> known_lap_s(const RaceCourse& course, const RaceOptions& as_raced) {
+/// Measures what the same car needs for a first lap and a later one, if it knows its pose and the course.
+void add_known_laps(const RaceCourse& course, const RaceOptions& as_raced, RaceResult& result) {
     RaceOptions options;
+    options.laps = 2;
     options.by_safe = true;
     options.limits = as_raced.limits;
     options.latency_s = as_raced.latency_s;
-    options.laps = 2;
-    const RaceResult result = race(course, options, truth_driver(course, options.laps, 60.0));
-    return {result.by_lap[0].time_s, result.by_lap[1].time_s};
+    const RaceResult known = race(course, options, truth_driver(course, options.laps, 60.0));
+    for (const std::size_t later : {0U, 1U}) result.by_lap[later].known_lap_s = known.by_lap[later].time_s;
 }
 
 std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
@@ -177,7 +176,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 heat.result = race(course, race_options,
                                    make_driver(*entries[i].racer, course, race_options,
                                                weights ? std::optional(*weights) : std::nullopt));
-                if (race_options.by_safe) heat.known_lap_s = known_lap_s(course, race_options);
+                if (race_options.by_safe) add_known_laps(course, race_options, heat.result);
                 // Keeps only the races that failed, and the first one, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();

@@ -108,32 +108,6 @@ DrivableLane line_aside(double left_m, double width_m = 3.5) {
     return lane;
 }
 
-TEST(LaneChoice, OnTheCourseOfTheLapBeforeAJumpFromTheLaneDrivenByHasToBeConfirmed) {
-    const DrivableLane course = line_aside(0.0);
-    const DrivableLane left = line_aside(0.6);
-    const DrivableLane fresh = line_aside(-0.7);
-    LaneChoice choice{LaneChoiceSettings{}};
-    EXPECT_TRUE(choice.take(left, DrivableLane{}, 0.9));
-    ASSERT_TRUE(choice.agrees(left, course));
-    ASSERT_TRUE(choice.agrees(fresh, course));
-    const DrivableLane& reference = choice.reference(fresh, left, course);
-    EXPECT_EQ(&reference, &left);
-    EXPECT_FALSE(choice.take(fresh, reference, 0.9)) << "one frame does not move the path by 1.3 m";
-    EXPECT_TRUE(choice.take(fresh, reference, 0.9)) << "two do";
-    EXPECT_EQ(&choice.reference(left, fresh, course), &course)
-        << "a lane nearer to the course is taken at once";
-}
-
-TEST(LaneChoice, OffTheCourseOfTheLapBeforeTheCourseIsTheReference) {
-    const DrivableLane course = line_aside(0.0);
-    const DrivableLane off = line_aside(2.0);
-    const DrivableLane on = line_aside(-0.5);
-    const LaneChoice choice{LaneChoiceSettings{}};
-    EXPECT_EQ(&choice.reference(on, off, course), &course) << "a lane that comes back is taken at once";
-    EXPECT_EQ(&choice.reference(off, on, course), &course);
-    EXPECT_EQ(&choice.reference(off, off, course), &course);
-}
-
 TEST(LaneChoice, ACarIsOnTheCourseOfTheLapBeforeWhereItIsNotAside) {
     const LaneChoice choice{LaneChoiceSettings{}};
     const DrivableLane course = line_aside(0.0);
