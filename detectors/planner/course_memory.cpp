@@ -295,11 +295,19 @@ DrivableLane CourseMemory::ahead(const Pose& pose, double length_m) const {
     std::erase_if(lane.points,
                   [&](const DrivablePoint& point) { return point.s_m > points_.front().s_m + length_m; });
     move(lane.points, laid_);
-    lane.points.insert(lane.points.begin(), points_.back());  // where the car was in the frame before
+    // It goes on from where the car was in the frame before. The laid course may begin behind that place.
+    const DrivablePoint& last = points_.back();
+    const auto first = std::ranges::find_if(lane.points, [&](const DrivablePoint& point) {
+        return pose_of(last).ahead_m(point.position) > settings_.step_m / 2.0;
+    });
+    lane.points.erase(lane.points.begin(), first);
+    lane.points.insert(lane.points.begin(), last);
     measure(lane);
+    if (!(lane.length_m > settings_.step_m)) return {};
+    lane = smoothed(lane, settings_.step_m);
     const auto foot = foot_on(lane, pose, 0.0, 2.0 * kPassed_m);
     if (!foot || foot->offset_m > settings_.line_half_width_m) return {};
-    return stretch(smoothed(lane, settings_.step_m), foot->s_m, lane.length_m, step_m_);
+    return stretch(lane, foot->s_m, lane.length_m, step_m_);
 }
 
 }  // namespace conelane

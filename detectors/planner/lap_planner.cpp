@@ -126,17 +126,10 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     const DrivableLane left = run_.path.left(frame.pose, frame.time_s);
     const Choice choice = chosen_lane(plan.answer, scene, left);
     double until_m = std::numeric_limits<double>::infinity();
-    const bool on_course = follow_course(choice, left, plan, until_m);
-    if (!on_course) choose_path(choice, left, plan, until_m);
+    if (!follow_course(choice, left, plan, until_m)) choose_path(choice, left, plan, until_m);
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
-    DrivableLane driven = plan.lane;
-    if (on_course && choice.fresh) {  // which corrects the course by half of what it shows beside the car
-        const DrivablePoint halfway = between(driven.points.front(), choice.fresh->points.front(), 0.5);
-        const double by_m = (halfway.position - driven.points.front().position).norm();
-        if (2.0 * by_m <= kChoice.jump_m) driven.points.front() = halfway;
-    }
-    run_.course.record(driven, run_.cones);
+    run_.course.record(plan.lane, run_.cones);
     run_.counter.observe(frame.pose, plan.lane, run_.cones);
     lead_out(plan);
     plan.stop_line_m = run_.counter.to_stop_line_m(plan.lane);
@@ -163,7 +156,9 @@ bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, P
     if (trust.length_m <= 0.0 || !run_.course.is_confirmed()) return false;
     if (!trust.reason.empty()) until_m = trust.length_m;
     if (choice.fresh && choice.fresh->trusted_m.value_or(0.0) > trust.length_m) return false;
-    plan.lane = steadied(course, left, options_.drivable.step_m);
+    // What the frame shows corrects half of each deviation in a lap.
+    const DrivableLane& shown = choice.fresh ? *choice.fresh : course;
+    plan.lane = steadied(steadied(course, shown, options_.drivable.step_m), left, options_.drivable.step_m);
     plan.lane.trusted_m = std::min(run_.path.steady_trust_m(trust.length_m, until_m), plan.lane.length_m);
     keep_path(plan);
     return true;

@@ -247,11 +247,17 @@ class OvalWithRivals {
     }
     /// The next five gates, those more than `leaves_m` ahead from the second row.
     [[nodiscard]] Lane lane(const Scene& scene, double s_m, double leaves_m) const {
+        const auto leaves = [&](double gate_m) { return gate_m - s_m > leaves_m; };
+        return lane(scene, s_m, leaves, leaves);
+    }
+    /// The same, those from the second row whose place along the course the test names, by side.
+    template <typename Left, typename Right>
+    [[nodiscard]] Lane lane(const Scene& scene, double s_m, Left is_left, Right is_right) const {
         Lane result;
         for (const int gate : ahead(s_m)) {
-            const auto [left, right] = at(gate, gate * spacing_m_ - s_m > leaves_m);
-            result.left.push_back(cone_at(scene, left).value());
-            result.right.push_back(cone_at(scene, right).value());
+            const double gate_m = gate * spacing_m_;
+            result.left.push_back(cone_at(scene, at(gate, is_left(gate_m)).first).value());
+            result.right.push_back(cone_at(scene, at(gate, is_right(gate_m)).second).value());
         }
         return result;
     }
@@ -301,6 +307,47 @@ TEST(LapPlanner, InLaterLapsTheCourseReplacesACandidateThatLeavesItFartherOn) {
         EXPECT_GT(plan.lane.length_m, 15.0);
         EXPECT_LT(tests::farthest_from_middle_m(oval.course(), s_m, plan.lane), 0.5);
     }
+}
+
+TEST(LapPlanner, AWrongLaneOfTheFirstLapIsLeftForATrustedOneAndForgotten) {
+    // In the first lap, over 15 m of the upper straight, the detector takes the right boundary of the second
+    // row: a lane of 6.5 m whose middle is 1.5 m beside the true one. Later it is right.
+    const OvalWithRivals oval;
+    const double lap_m = oval.course().lap_m;
+    double s_m = 0.0;
+    const auto is_in_wrong = [&](double at_m) {
+        return std::fmod(at_m, lap_m) > 0.39 * lap_m && std::fmod(at_m, lap_m) < 0.56 * lap_m;
+    };
+    const auto planner =
+        make_lap_planner({.laps = 4}, std::make_unique<ScriptedDetector>([&](const Scene& scene) {
+                             LaneAnswer answer;
+                             answer.status = LaneStatus::found;
+                             answer.lane = oval.lane(
+                                 scene, s_m, [](double) { return false; },
+                                 [&](double gate_m) { return s_m < lap_m && is_in_wrong(gate_m); });
+                             answer.confidence = 0.95;
+                             answer.trusted_m = 10.0;
+                             return answer;
+                         }));
+    std::array<double, 3> off_m{};    // largest distance of the first 6 m from the true middle, by lap
+    std::array<double, 3> least_m{};  // least trusted length in the wrong stretch
+    least_m.fill(100.0);
+    bool is_told = false;
+    for (int i = 0; s_m < 3.0 * lap_m - 1.0; ++i, s_m += 0.6) {
+        Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), {});
+        ASSERT_EQ(plan.state, PlanState::following) << s_m;
+        const auto lap = static_cast<std::size_t>(s_m / lap_m);
+        if (!is_in_wrong(s_m)) continue;
+        std::erase_if(plan.lane.points, [](const DrivablePoint& point) { return point.s_m > 6.0; });
+        off_m[lap] = std::max(off_m[lap], tests::farthest_from_middle_m(oval.course(), s_m, plan.lane));
+        least_m[lap] = std::min(least_m[lap], plan.safe_m);
+        is_told = is_told || (lap == 1 && plan.reason == "a trusted lane leaves the course");
+    }
+    EXPECT_GT(off_m[0], 1.2);
+    EXPECT_LT(off_m[1], 0.9);
+    EXPECT_TRUE(is_told);
+    EXPECT_LT(off_m[2], 0.4);
+    EXPECT_GT(least_m[2], 20.0) << "the course is right and trusted beyond the view";
 }
 
 TEST(LapPlanner, AFrameOfTheSameTimeAtAnotherPoseIsNotFollowed) {
