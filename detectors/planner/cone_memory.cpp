@@ -139,6 +139,7 @@ void ConeMemory::see(const Cone& seen, std::size_t remembered) {
         cones_.push_back({.id = next_id_++, .position = seen.position, .confidence = seen.confidence});
     } else {
         RememberedCone& cone = cones_[remembered];
+        if ((seen.position - cone.position).norm() > settings_.moved_m) cone.sightings = 0;
         ++cone.sightings;
         const double weight = 1.0 / std::min(cone.sightings, settings_.averaged_sightings);
         cone.position += weight * (seen.position - cone.position);

@@ -44,7 +44,9 @@ class ConeMemory {
         std::array<int, 5> colors{};  ///< sightings in each color
     };
     [[nodiscard]] const std::vector<RememberedCone>& cones() const { return cones_; }
-    [[nodiscard]] bool is_seen_now(const RememberedCone& cone) const { return cone.last_seen == frame_; }
+    [[nodiscard]] bool is_seen_lately(const RememberedCone& cone) const {
+        return frame_ - cone.last_seen < settings_.lately_frames;
+    }
 
     /// Whether the last frame would have shown a cone at this place. Range and bearings of the sensor are not
     /// known. Assumption: it sees about as far and as wide as in that frame.

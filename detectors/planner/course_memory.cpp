@@ -22,7 +22,6 @@ constexpr double kNotedBehind_m = 5.0;     ///< the car: farther back, cones are
 constexpr double kComparedAhead_m = 35.0;  ///< of the course, with the cones seen
 constexpr double kBeside_m = 1.0;          ///< along the lane: a cone is beside a recorded point
 constexpr double kSameNoted_m = 0.3;
-constexpr double kSameStranger_m = 0.5;
 
 /// Sets the arc lengths, from chords, and the length of a lane.
 void measure(DrivableLane& lane) {
@@ -207,16 +206,10 @@ void CourseMemory::observe(const Frame& frame, const ConeMemory& cones) {
         if (noted.s_m > points_.front().s_m + kComparedAhead_m) break;
         const Point place = laid_(noted.place);
         const bool is_expected = cones.is_in_sure_view(place);
-        const Cone* nearest = nullptr;
-        double nearest_m = gate_m;
-        for (const Cone& cone : frame.cones) {
-            const double distance_m = (cone.position - place).norm();
-            if (distance_m > nearest_m) continue;
-            nearest_m = distance_m;
-            nearest = &cone;
-        }
+        const auto nearest = std::ranges::min_element(
+            frame.cones, {}, [&](const Cone& cone) { return (cone.position - place).squaredNorm(); });
         if (is_expected) ++expected;
-        if (nearest != nullptr) {
+        if (nearest != frame.cones.end() && (nearest->position - place).norm() <= gate_m) {
             pairs.push_back({noted.place, nearest->position});
             noted.missed = 0;
             if (is_expected) ++matched_;
@@ -228,40 +221,15 @@ void CourseMemory::observe(const Frame& frame, const ConeMemory& cones) {
         fit_ = std::clamp(fit_ + (2 * matched_ > expected ? 1 : -1), -settings_.fitting_frames,
                           settings_.fitting_frames);
     }
-    lay(pairs, frame.pose.position);
-    find_strangers(frame);
-}
-
-/// Seen in three frames, never more than five frames apart: false cones of single frames are no strangers.
-void CourseMemory::find_strangers(const Frame& frame) {
-    for (Stranger& stranger : strangers_) ++stranger.unseen;
-    for (const Cone& cone : frame.cones) {
-        const bool was_there = std::ranges::any_of(noted_, [&](const NotedCone& noted) {
-            return (laid_(noted.place) - cone.position).norm() <= settings_.same_cone_m;
-        });
-        if (was_there) continue;
-        const auto known = std::ranges::find_if(strangers_, [&](const Stranger& stranger) {
-            return (stranger.place - cone.position).norm() <= kSameStranger_m;
-        });
-        if (known == strangers_.end()) {
-            strangers_.push_back({cone.position});
-        } else {
-            *known = {cone.position, known->frames + 1};
-        }
-    }
-    std::erase_if(strangers_,
-                  [&](const Stranger& stranger) { return stranger.unseen > settings_.unseen_frames; });
-}
-
-void CourseMemory::lay(const std::vector<PlacePair>& pairs, const Point& place) {
     ShiftSettings shared;
     shared.min_shift_m = 0.0;
-    const std::optional<RigidShift> shift = common_shift(pairs, shared);
-    if (!shift) return;
-    laid_ = laid_.towards(*shift, fit_ > 0 ? settings_.kept_gain : settings_.settling_gain, place);
+    if (const std::optional<RigidShift> shift = common_shift(pairs, shared)) {
+        const double gain = fit_ > 0 ? settings_.kept_gain : settings_.settling_gain;
+        laid_ = laid_.towards(*shift, gain, frame.pose.position);
+    }
 }
 
-LaneTrust CourseMemory::trust(const DrivableLane& lane) const {
+LaneTrust CourseMemory::trust(const DrivableLane& lane, const ConeMemory& cones) const {
     if (lane.points.empty()) return {0.0, "the course is not ahead of the car"};
     if (fit_ <= 0) return {0.0, "the cones do not fit the course"};
     LaneTrust trust{lane.length_m, ""};
@@ -275,9 +243,13 @@ LaneTrust CourseMemory::trust(const DrivableLane& lane) const {
             end_before(arc_length_beside(lane, laid_(noted.place), settings_.boundary_m + kBeside_m),
                        "a cone of the boundary is gone");
     }
-    for (const Stranger& stranger : strangers_) {
-        if (stranger.frames >= settings_.stranger_frames)
-            end_before(arc_length_beside(lane, stranger.place, -settings_.in_lane_m),
+    for (const ConeMemory::RememberedCone& cone : cones.cones()) {
+        if (cone.sightings < settings_.min_sightings || !cones.is_seen_lately(cone)) continue;
+        const bool was_there = std::ranges::any_of(noted_, [&](const NotedCone& noted) {
+            return (laid_(noted.place) - cone.position).norm() <= settings_.same_cone_m;
+        });
+        if (!was_there)
+            end_before(arc_length_beside(lane, cone.position, -settings_.in_lane_m),
                        "a cone stands in the lane");
     }
     return trust;

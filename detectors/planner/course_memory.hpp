@@ -44,7 +44,7 @@ class CourseMemory {
     [[nodiscard]] bool is_confirmed() const { return closed_ && fit_ > 0 && matched_ >= 2; }
     /// How far nothing that was seen contradicts `lane`, a result of `ahead`: cones that do not fit the
     /// course, a cone in the lane that was not there, a cone of the boundary that is gone.
-    [[nodiscard]] LaneTrust trust(const DrivableLane& lane) const;
+    [[nodiscard]] LaneTrust trust(const DrivableLane& lane, const ConeMemory& cones) const;
 
   private:
     /// A cone beside the recorded points.
@@ -54,25 +54,16 @@ class CourseMemory {
         bool is_boundary = false;
         int missed = 0;  ///< frames in a row that should have shown it
     };
-    /// A seen cone that is not noted.
-    struct Stranger {
-        Point place;
-        int frames = 1;
-        int unseen = 0;  ///< frames since
-    };
-    void find_strangers(const Frame& frame);
     void append(const DrivablePoint& point, const ConeMemory& cones);
     void close(const DrivableLane& lane);
     void drop_passed(const DrivablePoint& at);
     void note_cones(const DrivablePoint& here, const ConeMemory& cones);
-    void lay(const std::vector<PlacePair>& pairs, const Point& place);
 
     CourseSettings settings_;
     double step_m_;
     std::vector<DrivablePoint> points_;  ///< oldest first; s_m counts on from the first point of the run
     std::vector<NotedCone> noted_;       ///< in the same order
-    std::vector<Stranger> strangers_;
-    RigidShift laid_;  ///< from the recorded places to those of the cones now
+    RigidShift laid_;                    ///< from the recorded places to those of the cones now
     int fit_ = 0;      ///< frames that fitted the course, less those that did not, within fitting_frames
     int matched_ = 0;  ///< noted cones that the last frame showed
     bool closed_ = false;

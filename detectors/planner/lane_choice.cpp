@@ -69,11 +69,6 @@ bool LaneChoice::agrees(const DrivableLane& lane, const DrivableLane& left) cons
     return is_spent(left) || jump_m(lane, left, settings_.near_m) <= settings_.jump_m;
 }
 
-bool LaneChoice::is_on(const DrivableLane& course, const DrivableLane& left) const {
-    return !is_spent(course) && !left.points.empty() &&
-           jump_m(left, course, settings_.on_course_m) <= settings_.on_course_offset_m;
-}
-
 /// Where the lane runs along the one driven so far, `weight` is added to what supported that one; elsewhere
 /// it is the only support.
 void LaneChoice::support(const DrivableLane& lane, double weight) {

@@ -64,9 +64,6 @@ class LaneChoice {
     /// Whether a lane continues the one driven so far, or too little of that one is left. `left`: the rest of
     /// the lane driven so far; without points there is none.
     [[nodiscard]] bool agrees(const DrivableLane& lane, const DrivableLane& left) const;
-    /// Whether a car at the beginning of `left` is on `course`, the one of the lap before, however far the
-    /// two part ahead. It is not on a course without a rest.
-    [[nodiscard]] bool is_on(const DrivableLane& course, const DrivableLane& left) const;
     /// Whether to drive by `fresh` from now on, which the frame supports with `weight`. `kept_weight`: the
     /// frame's support of the lane driven so far if `fresh` disagrees with it; 0 for no support.
     [[nodiscard]] bool take(const DrivableLane& fresh, const DrivableLane& left, double weight = 1.0,

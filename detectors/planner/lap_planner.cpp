@@ -145,12 +145,12 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
 bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, Plan& plan, double& until_m) {
     if (!run_.course.closed()) return false;
     const DrivableLane course = run_.course.ahead(run_.pose, kChoice.known_ahead_m);
-    LaneTrust trust = run_.course.trust(course);
+    LaneTrust trust = run_.course.trust(course, run_.cones);
     if (choice.seen && !course.points.empty()) {
         const double contested = contested_m(*choice.seen, course);
         if (contested < trust.length_m) trust = {contested, "a trusted lane leaves the course"};
     }
-    if (trust.length_m > 0.0 && !left.points.empty() && !run_.choice.is_on(course, left))
+    if (trust.length_m > 0.0 && !left.points.empty() && !run_.choice.agrees(course, left))
         trust = {0.0, "the car is not on the course"};
     plan.reason = trust.reason;
     if (trust.length_m <= 0.0 || !run_.course.is_confirmed()) return false;

@@ -418,7 +418,7 @@ void CourseFoot::follow(const Point& point, double reach_m) {
         const auto from = place(i);
         const auto to = place(i + 1);
         if (!from || !to) continue;
-        const FootPoint foot = foot_point(point, {from->position, to->position});
+        const FootPoint foot = foot_point(point, {*from, *to});
         if (foot.distance_m >= best_m) continue;
         best_m = foot.distance_m;
         best_at_m = (static_cast<double>(i) + foot.parameter) * course_.step_m;
@@ -427,11 +427,12 @@ void CourseFoot::follow(const Point& point, double reach_m) {
     at_m_ = best_at_m;
 }
 
-std::optional<Pose> CourseFoot::place(long number) const {
+std::optional<Point> CourseFoot::place(long number) const {
     const auto size = static_cast<long>(course_.line.size());
-    if (course_.closed) return course_.line[static_cast<std::size_t>(((number % size) + size) % size)];
+    if (course_.closed)
+        return course_.line[static_cast<std::size_t>(((number % size) + size) % size)].position;
     if (number < 0 || number >= size) return std::nullopt;
-    return course_.line[static_cast<std::size_t>(number)];
+    return course_.line[static_cast<std::size_t>(number)].position;
 }
 
 bool stays_in_ring(const TrackBoundaries& lane, const Segment& way) {

@@ -69,8 +69,8 @@ class CourseFoot {
     [[nodiscard]] double at_m() const { return at_m_; }
     [[nodiscard]] double distance_m() const { return distance_m_; }
     [[nodiscard]] double round_m() const { return static_cast<double>(course_.line.size()) * course_.step_m; }
-    /// The pose of the line with this number; nothing where a line that is driven once has none.
-    [[nodiscard]] std::optional<Pose> place(long number) const;
+    /// The point of the line with this number; nothing where a line that is driven once has none.
+    [[nodiscard]] std::optional<Point> place(long number) const;
 
   private:
     const RaceCourse& course_;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -17,14 +16,12 @@ namespace {
 
 /// A path is due in 100 ms. The limit is longer, so that the wall clock does not influence answers.
 constexpr double kNoLimit_ms = 10'000.0;
-constexpr double kStopMargin_m = 0.5;     ///< tolerance for the driver `truth`, whose pose is noisy
-constexpr double kCurvatureOver_m = 4.0;  ///< length of the true line around a point
+constexpr double kStopMargin_m = 0.5;  ///< tolerance for the driver `truth`, whose pose is noisy
 
-void follow(const DrivableLane& lane, Drive& drive) {
-    for (const DrivablePoint& point : lane.points) {
-        drive.path.push_back(point.position);
-        drive.curvature_1pm.push_back(point.curvature_1pm);
-    }
+std::vector<Point> points_of(const DrivableLane& lane) {
+    std::vector<Point> path;
+    for (const DrivablePoint& point : lane.points) path.push_back(point.position);
+    return path;
 }
 
 /// A detector needs distinct ids.
@@ -41,7 +38,7 @@ Drive drive_by(const LaneAnswer& answer, const Scene& scene) {
     Drive drive;
     if (answer.status != LaneStatus::found) return drive;
     const DrivableLane lane = drivable(answer, scene);
-    follow(lane, drive);
+    drive.path = points_of(lane);
     if (lane.trusted_m) drive.safe_m = *lane.trusted_m;
     return drive;
 }
@@ -97,7 +94,7 @@ Driver planner_driver(const std::string& detector, const DetectorOptions& detect
         Drive drive;
         try {
             const Plan plan = planner->update(frame, {.time_limit_ms = kNoLimit_ms});
-            follow(plan.lane, drive);
+            drive.path = points_of(plan.lane);
             drive.stop = plan.stop;
             drive.is_flagged = plan.state != PlanState::following;
             drive.age_s = plan.age_s;
@@ -161,15 +158,8 @@ Driver truth_driver(const RaceCourse& course, int laps, double ahead_m) {
         }
         Drive drive;
         const auto first = static_cast<long>(std::floor(at.at_m() / course.step_m));
-        const long half = std::lround(kCurvatureOver_m / 2.0 / course.step_m);
-        for (long i = first; i <= first + static_cast<long>(ahead_m / course.step_m); ++i) {
-            const std::optional<Pose> here = at.place(i);
-            if (!here) continue;
-            drive.path.push_back(here->position);
-            const double from_rad = at.place(i - half).value_or(*here).yaw_rad;
-            const double turned_rad = at.place(i + half).value_or(*here).yaw_rad - from_rad;
-            drive.curvature_1pm.push_back(std::remainder(turned_rad, 2.0 * std::numbers::pi) /
-                                          kCurvatureOver_m);
+        for (long i = 0; i <= static_cast<long>(ahead_m / course.step_m); ++i) {
+            if (const std::optional<Point> point = at.place(first + i)) drive.path.push_back(*point);
         }
         drive.stop = at.at_m() >= *finish_m;
         return drive;

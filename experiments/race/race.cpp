@@ -1,6 +1,7 @@
 #include "experiments/race/race.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/planner/lane_stretch.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "model/deadline.hpp"
 
@@ -80,16 +81,17 @@ std::optional<double> p95(std::vector<double> values) {
     return values[static_cast<std::size_t>(rank)];
 }
 
-/// The largest speeds along a path, whatever the speed now.
-std::vector<SpeedPoint> speeds_of(const Drive& drive, const VehicleLimits& limits) {
+/// A path as a lane, with curvatures.
+DrivableLane lane_along(const std::vector<Point>& path) {
     DrivableLane lane;
-    for (std::size_t i = 0; i < drive.path.size(); ++i) {
-        if (i > 0) lane.length_m += (drive.path[i] - drive.path[i - 1]).norm();
-        lane.points.push_back({.s_m = lane.length_m,
-                               .position = drive.path[i],
-                               .curvature_1pm = drive.curvature_1pm.empty() ? 0.0 : drive.curvature_1pm[i]});
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const Point step = path[std::min(i + 1, path.size() - 1)] - path[i];
+        lane.points.push_back({.s_m = lane.length_m, .heading_rad = std::atan2(step.y(), step.x())});
+        lane.length_m += step.norm();
     }
-    return speed_profile(lane, limits, {.v_now_mps = limits.v_max_mps, .stop_at_m = drive.safe_m});
+    if (path.size() > 1) lane.points.back().heading_rad = lane.points[path.size() - 2].heading_rad;
+    even_curvatures(lane);
+    return lane;
 }
 
 /// The beginning of a path, of about this length.
@@ -450,9 +452,8 @@ class Referee {
         if (!near.empty() && !path_before_.empty())
             sideways_m_[laps_done_ > 0 ? 1 : 0].push_back(
                 foot_on_polyline(near.back(), path_before_).distance_m);
-        const std::size_t nearest = beginning(path, kNear_m).size();
-        for (std::size_t i = 0; i < std::min(nearest, drive.curvature_1pm.size()); ++i) {
-            lap.max_curvature_1pm = std::max(lap.max_curvature_1pm, std::abs(drive.curvature_1pm[i]));
+        for (const DrivablePoint& point : lane_along(beginning(path, kNear_m)).points) {
+            lap.max_curvature_1pm = std::max(lap.max_curvature_1pm, std::abs(point.curvature_1pm));
         }
     }
 
@@ -554,7 +555,9 @@ class Run {
     void take(Answer answer) {
         if (answer.frame_s < car_.newest_s) return;
         if (answer.drive.stop) referee_.note_stop();
-        if (options_.by_safe) answer.speeds = speeds_of(answer.drive, options_.limits);
+        if (options_.by_safe)  // the largest speeds, whatever the speed now
+            answer.speeds = speed_profile(lane_along(answer.drive.path), options_.limits,
+                                          {options_.limits.v_max_mps, answer.drive.safe_m});
         car_.take(std::move(answer));
     }
 

@@ -53,7 +53,6 @@ struct RaceOptions {
 /// The answer to a frame.
 struct Drive {
     std::vector<Point> path;  ///< from the car on, in the map frame; fewer than two points: none
-    std::vector<double> curvature_1pm = {};  ///< of the points of the path; empty: taken as straight
     bool stop = false;
     /// Whether the path is said to be an earlier one, or absent.
     bool is_flagged = false;

@@ -78,6 +78,13 @@ Json flat(const std::vector<Point>& points) {
     return list;
 }
 
+/// A column of names, then columns of numbers.
+TextTable table_by_method(std::initializer_list<const char*> numbers) {
+    std::vector<TextTable::Column> columns{{"method", true}};
+    for (const char* const title : numbers) columns.push_back({title});
+    return TextTable(std::move(columns));
+}
+
 /// How far the unfinished races went; empty if there is none.
 std::string lost_table(std::span<const Heat> heats) {
     TextTable table(
@@ -113,18 +120,9 @@ Json identity(const Heat& heat) {
 }  // namespace
 
 std::string race_table(std::span<const Heat> heats, int laps) {
-    TextTable table({{"method", true},
-                     {"fp"},
-                     {"races"},
-                     {"finished %"},
-                     {"laps %"},
-                     {"m to departure"},
-                     {"hit a lap"},
-                     {"error p95 m"},
-                     {"no path %"},
-                     {"old path %"},
-                     {"unsteady %"},
-                     {"wrong path %"}});
+    TextTable table =
+        table_by_method({"fp", "races", "finished %", "laps %", "m to departure", "hit a lap", "error p95 m",
+                         "no path %", "old path %", "unsteady %", "wrong path %"});
     for (const auto& [row, races] : grouped(heats, row_of)) {
         const auto total = [&](int RaceResult::*number) {
             return static_cast<std::size_t>(sum(races, [&](const RaceResult& r) { return r.*number; }));
@@ -153,15 +151,8 @@ std::string race_table(std::span<const Heat> heats, int laps) {
 }
 
 std::string speed_table(std::span<const Heat> heats) {
-    TextTable table({{"method", true},
-                     {"fp"},
-                     {"laps", true},
-                     {"time ratio"},
-                     {"safe < 3 m %"},
-                     {"right of these %"},
-                     {"trusted, wrong %"},
-                     {"sideways p95 m"},
-                     {"curvature 1/m"}});
+    TextTable table = table_by_method({"fp", "laps", "time ratio", "safe < 3 m %", "right of these %",
+                                       "trusted, wrong %", "sideways p95 m", "curvature 1/m"});
     for (const auto& [row, races] : grouped(heats, row_of)) {
         for (const std::size_t later : {0U, 1U}) {
             const auto of_lap = [later](const auto& of) {
@@ -184,7 +175,7 @@ std::string speed_table(std::span<const Heat> heats) {
 }
 
 std::string answer_time_table(std::span<const Heat> heats) {
-    TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
+    TextTable table = table_by_method({"answer median ms", "p99 ms"});
     for (const auto& [detector, races] : grouped(heats, [](const Heat& heat) { return heat.detector; })) {
         Sample times_ms;
         for (const RaceResult* race : races) {

@@ -91,11 +91,8 @@ struct WeightedCourse {
 
 /// Measures what the same car needs for a first lap and a later one, if it knows its pose and the course.
 void add_known_laps(const RaceCourse& course, const RaceOptions& as_raced, RaceResult& result) {
-    RaceOptions options;
-    options.laps = 2;
-    options.by_safe = true;
-    options.limits = as_raced.limits;
-    options.latency_s = as_raced.latency_s;
+    const RaceOptions options{
+        .sight = {}, .laps = 2, .by_safe = true, .limits = as_raced.limits, .latency_s = as_raced.latency_s};
     const RaceResult known = race(course, options, truth_driver(course, options.laps, 60.0));
     for (const std::size_t later : {0U, 1U}) result.by_lap[later].known_lap_s = known.by_lap[later].time_s;
 }

@@ -5,6 +5,8 @@
 #include "detectors/recipe.hpp"
 #include "python/bindings/bindings.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -280,8 +282,7 @@ braking; across and along, the tyres share their grip (the friction ellipse).
 centre_line: (N, 7), columns as of `Lane.centre_line`, for example of a plan.
 v_now: Speed at the first point [m/s]. If the first speed of the result is lower, the car has to brake at once.
 stop_at_m: Where the car has to be at rest [m], for example `Plan.safe_m`; None for nowhere.
-a_lateral, a_brake, a_drive: Largest accelerations across the car, along it by the tyres, and by the motor [m/s^2].
-v_max: Largest speed [m/s].
+a_lateral, a_brake, a_drive, v_max: Limits across the car, along it by the tyres and by the motor [m/s^2]; of the speed.
 Returns (N, 4): s [m], speed [m/s], acceleration up to the next row [m/s^2], time [s]; the time behind a stop is inf.
 Raises ValueError for wrong shapes, and for a limit that is not positive and finite.
 
@@ -307,11 +308,8 @@ py::array_t<double> speeds(const py::object& centre_line, double v_now, std::opt
         speed_profile(path, {a_lateral, a_brake, a_drive, v_max}, {v_now, limit_of(stop_at_m)});
     py::array_t<double> result({rows.shape(0), py::ssize_t{4}});
     for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
-        const SpeedPoint& point = profile[static_cast<std::size_t>(i)];
-        result.mutable_at(i, 0) = point.s_m;
-        result.mutable_at(i, 1) = point.v_mps;
-        result.mutable_at(i, 2) = point.a_mps2;
-        result.mutable_at(i, 3) = point.t_s;
+        const auto& [s_m, v_mps, a_mps2, t_s] = profile[static_cast<std::size_t>(i)];
+        std::ranges::copy(std::array{s_m, v_mps, a_mps2, t_s}, result.mutable_data(i));
     }
     return result;
 }

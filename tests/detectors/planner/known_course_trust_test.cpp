@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kStep_m = 0.6;
 
-/// Three laps of the oval, seen 12 m far, with other cones from the second lap on, in a map that may drift.
+/// Laps of the oval, seen 12 m far, with other cones from the second lap on, in a map that may drift.
 class KnownCourse : public testing::Test {
   protected:
     struct Seen {
@@ -28,33 +28,27 @@ class KnownCourse : public testing::Test {
     std::vector<Seen> drive_lap(int lap) {
         std::vector<Seen> seen;
         for (; s_m_ < (lap + 1) * course_.lap_m; s_m_ += kStep_m, time_s_ += 0.1) {
+            SCOPED_TRACE(s_m_);
+            const double laps = s_m_ / course_.lap_m;
+            const RigidShift drift{{0.0, 0.0}, laps * turn_rad_, laps * Point(drift_m_, 0.0)};
             tests::DrivenCourse now = lap > 0 && changed_ ? *changed_ : course_;
-            Frame frame = frame_at(now, s_m_, time_s_, {.range_m = 12.0, .noise_m = noise_m_}, &random_);
-            const double share = s_m_ / course_.lap_m;
-            for (Cone& cone : frame.cones) cone.position = drifted(cone.position, share);
-            frame.pose = {drifted(frame.pose.position, share), frame.pose.yaw_rad + share * turn_rad_};
+            for (Cone& cone : now.cones) cone.position = drift(cone.position);
+            now.pose = [this, drift](double s_m) {
+                const Pose at = course_.pose(s_m);
+                return Pose{drift(at.position), at.yaw_rad + drift.turn_rad};
+            };
+            Frame frame = frame_at(now, s_m_, time_s_, {.range_m = 12.0, .noise_m = 0.05}, &random_);
             const Point ahead = frame.pose.heading();
             frame.pose.position += aside_m_ * Point(-ahead.y(), ahead.x());
             Plan plan = planner_->update(frame, tests::kNoTimeLimit);
-            SCOPED_TRACE(s_m_);
             tests::expect_consistent(plan, Mission::trackdrive, frame.pose);
             // The car drives by the path, also where the lane is not where it was.
-            if (changed_) {
-                const Pose next = course_.pose(s_m_ + kStep_m);
-                aside_m_ = next.left_m(point_at(plan.lane, kStep_m).position);
-            }
+            if (changed_) aside_m_ = now.pose(s_m_ + kStep_m).left_m(point_at(plan.lane, kStep_m).position);
             DrivableLane near = plan.lane;
             std::erase_if(near.points, [](const DrivablePoint& point) { return point.s_m > 10.0; });
-            for (DrivablePoint& point : near.points) point.position = undrifted(point.position, share);
-            seen.push_back({s_m_, std::move(plan), farthest_from_middle_m(course_, s_m_, near)});
+            seen.push_back({s_m_, std::move(plan), farthest_from_middle_m(now, s_m_, near)});
         }
         return seen;
-    }
-    [[nodiscard]] Point drifted(const Point& place, double share) const {
-        return RigidShift{{0.0, 0.0}, share * turn_rad_, share * Point(drift_m_, 0.0)}(place);
-    }
-    [[nodiscard]] Point undrifted(const Point& place, double share) const {
-        return RigidShift{{0.0, 0.0}, -share * turn_rad_}(place - share * Point(drift_m_, 0.0));
     }
     /// The cones from `from_m` to `to_m` along the course, moved to the left.
     void change(double from_m, double to_m, double left_m, bool only_right = false) {
@@ -79,21 +73,11 @@ class KnownCourse : public testing::Test {
         for (const Seen& s : seen) all.insert(s.plan.reason);
         return all;
     }
-    /// Expects that once the place is near, nothing beyond what this frame shows is trusted past it.
-    static void expect_not_trusted_past(const std::vector<Seen>& seen, double at_m) {
-        for (const Seen& s : seen) {
-            const double to_it_m = at_m - s.s_m;
-            if (to_it_m < 1.5 || to_it_m > 6.0) continue;
-            EXPECT_LT(s.plan.safe_m, 12.0) << s.s_m;
-            EXPECT_FALSE(s.plan.reason.empty()) << s.s_m;
-        }
-    }
 
     tests::DrivenCourse course_ = tests::oval(4);
     std::optional<tests::DrivenCourse> changed_;
     double drift_m_ = 0.0;
     double turn_rad_ = 0.0;
-    double noise_m_ = 0.05;
     std::unique_ptr<Planner> planner_ = make_planner({.laps = 4});
     std::mt19937 random_{7};
     double s_m_ = 0.0;
@@ -109,21 +93,24 @@ TEST_F(KnownCourse, IsTrustedBeyondTheView) {
     EXPECT_GT(far_share(drive_lap(2)), 0.99);
 }
 
-TEST_F(KnownCourse, IsNotTrustedPastAConeThatMovedIntoTheLane) {
-    change(course_.lap_m / 2.0 - 1.0, course_.lap_m / 2.0 + 1.0, 1.2, true);
-    (void)drive_lap(0);
-    const std::vector<Seen> seen = drive_lap(1);
-    expect_not_trusted_past(seen, 1.5 * course_.lap_m);
-    EXPECT_TRUE(reasons(seen).contains("a cone stands in the lane"));
-    EXPECT_GT(far_share(seen), 0.6) << "elsewhere it is";
-}
-
-TEST_F(KnownCourse, IsNotTrustedPastAGateThatMoved) {
-    change(course_.lap_m / 2.0 - 1.0, course_.lap_m / 2.0 + 1.0, 1.5);
-    (void)drive_lap(0);
-    const std::vector<Seen> seen = drive_lap(1);
-    expect_not_trusted_past(seen, 1.5 * course_.lap_m);
-    EXPECT_GT(far_share(seen), 0.6);
+/// Once the place is near, nothing beyond what a frame shows is trusted past it.
+TEST_F(KnownCourse, IsNotTrustedPastAConeThatMovedIntoTheLaneOrAGateThatMoved) {
+    for (const bool is_gate : {false, true}) {
+        planner_->reset();
+        s_m_ = aside_m_ = 0.0;
+        const double at_m = course_.lap_m / 2.0;
+        change(at_m - 1.0, at_m + 1.0, is_gate ? 1.5 : 1.2, !is_gate);
+        (void)drive_lap(0);
+        const std::vector<Seen> seen = drive_lap(1);
+        for (const Seen& s : seen) {
+            const double to_it_m = 1.5 * course_.lap_m - s.s_m;
+            if (to_it_m < 1.5 || to_it_m > 6.0) continue;
+            EXPECT_LT(s.plan.safe_m, 12.0) << s.s_m;
+            EXPECT_FALSE(s.plan.reason.empty()) << s.s_m;
+        }
+        EXPECT_TRUE(is_gate || reasons(seen).contains("a cone stands in the lane"));
+        EXPECT_GT(far_share(seen), 0.6) << "elsewhere it is";
+    }
 }
 
 TEST_F(KnownCourse, IsTrustedInAMapThatDrifts) {
@@ -141,16 +128,11 @@ TEST_F(KnownCourse, ThatChangedBetweenLapsIsDrivenAsItIsNow) {
     const double from_m = course_.lap_m / 2.0 - 7.0;
     change(from_m, from_m + 14.0, 1.2);
     (void)drive_lap(0);
-    const std::vector<Seen> seen = drive_lap(1);
-    EXPECT_GE(reasons(seen).size(), 2U) << "the plan says why";
-    const auto in_change = [&](const Seen& s) {
-        const double there_m = std::fmod(s.s_m, course_.lap_m) - from_m;
-        return there_m > 2.0 && there_m < 10.0;
-    };
+    EXPECT_GE(reasons(drive_lap(1)).size(), 2U) << "the plan says why";
     for (const Seen& s : drive_lap(2)) {
-        if (!in_change(s)) continue;
-        const Pose at = course_.pose(s.s_m);
-        EXPECT_NEAR(at.left_m(s.plan.lane.points.front().position), 1.2, 0.6) << s.s_m;
+        const double there_m = std::fmod(s.s_m, course_.lap_m) - from_m;
+        if (there_m < 2.0 || there_m > 10.0) continue;
+        EXPECT_NEAR(course_.pose(s.s_m).left_m(s.plan.lane.points.front().position), 1.2, 0.6) << s.s_m;
     }
 }
 

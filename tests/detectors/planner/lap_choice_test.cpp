@@ -108,16 +108,6 @@ DrivableLane line_aside(double left_m, double width_m = 3.5) {
     return lane;
 }
 
-TEST(LaneChoice, ACarIsOnTheCourseOfTheLapBeforeWhereItIsNotAside) {
-    const LaneChoice choice{LaneChoiceSettings{}};
-    const DrivableLane course = line_aside(0.0);
-    EXPECT_TRUE(choice.is_on(course, line_aside(0.4)));
-    EXPECT_FALSE(choice.is_on(course, line_aside(0.9)));
-    EXPECT_TRUE(choice.is_on(course, bent(3.0, 1.0))) << "the lane driven by leaves it ahead of the car";
-    EXPECT_FALSE(choice.is_on(DrivableLane{}, line_aside(0.0))) << "there is no course";
-    EXPECT_FALSE(choice.is_on(course, DrivableLane{})) << "where the car is, nobody knows";
-}
-
 TEST(Steadied, NearTheCarNoiseMovesTheLineHalfAsMuchAndTheWidthsSaySo) {
     const DrivableLane lane = steadied(line_aside(0.4), line_aside(0.0), 0.5);
     for (const DrivablePoint& point : lane.points) {
@@ -329,25 +319,23 @@ TEST(LapPlanner, AWrongLaneOfTheFirstLapIsLeftForATrustedOneAndForgotten) {
                              answer.trusted_m = 10.0;
                              return answer;
                          }));
-    std::array<double, 3> off_m{};    // largest distance of the first 6 m from the true middle, by lap
-    std::array<double, 3> least_m{};  // least trusted length in the wrong stretch
-    least_m.fill(100.0);
+    std::array<double, 3> off_m{};  // largest distance of the first 6 m from the true middle, by lap
     bool is_told = false;
+    double least_m = 100.0;  // trusted in the third lap
     for (int i = 0; s_m < 3.0 * lap_m - 1.0; ++i, s_m += 0.6) {
         Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), {});
-        ASSERT_EQ(plan.state, PlanState::following) << s_m;
-        const auto lap = static_cast<std::size_t>(s_m / lap_m);
         if (!is_in_wrong(s_m)) continue;
+        const auto lap = static_cast<std::size_t>(s_m / lap_m);
         std::erase_if(plan.lane.points, [](const DrivablePoint& point) { return point.s_m > 6.0; });
         off_m[lap] = std::max(off_m[lap], tests::farthest_from_middle_m(oval.course(), s_m, plan.lane));
-        least_m[lap] = std::min(least_m[lap], plan.safe_m);
         is_told = is_told || (lap == 1 && plan.reason == "a trusted lane leaves the course");
+        if (lap == 2) least_m = std::min(least_m, plan.safe_m);
     }
     EXPECT_GT(off_m[0], 1.2);
     EXPECT_LT(off_m[1], 0.9);
     EXPECT_TRUE(is_told);
     EXPECT_LT(off_m[2], 0.4);
-    EXPECT_GT(least_m[2], 20.0) << "the course is right and trusted beyond the view";
+    EXPECT_GT(least_m, 20.0) << "the course is right and trusted beyond the view";
 }
 
 TEST(LapPlanner, AFrameOfTheSameTimeAtAnotherPoseIsNotFollowed) {
