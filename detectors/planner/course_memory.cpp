@@ -225,7 +225,10 @@ void CourseMemory::observe(const Frame& frame, const ConeMemory& cones) {
     shared.min_shift_m = 0.0;
     if (const std::optional<RigidShift> shift = common_shift(pairs, shared)) {
         const double gain = fit_ > 0 ? settings_.kept_gain : settings_.settling_gain;
-        laid_ = laid_.towards(*shift, gain, frame.pose.position);
+        const Point& car = frame.pose.position;
+        const Point here = laid_(car);
+        laid_ = {car, std::lerp(laid_.turn_rad, shift->turn_rad, gain),
+                 here + gain * ((*shift)(car)-here) - car};
     }
 }
 

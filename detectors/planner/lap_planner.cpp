@@ -156,9 +156,13 @@ bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, P
     if (trust.length_m <= 0.0 || !run_.course.is_confirmed()) return false;
     if (!trust.reason.empty()) until_m = trust.length_m;
     if (choice.fresh && choice.fresh->trusted_m.value_or(0.0) > trust.length_m) return false;
-    // What the frame shows corrects half of each deviation in a lap.
-    const DrivableLane& shown = choice.fresh ? *choice.fresh : course;
-    plan.lane = steadied(steadied(course, shown, options_.drivable.step_m), left, options_.drivable.step_m);
+    // What this frame shows for sure is newer than the course. Where the two do not meet, each counts half.
+    const double step_m = options_.drivable.step_m;
+    DrivableLane shown;
+    if (choice.fresh) shown = stretch(*choice.fresh, 0.0, choice.fresh->trusted_m.value_or(0.0), step_m);
+    DrivableLane lane = extended(shown, course, step_m);
+    if (lane.length_m < course.length_m - kChoice.near_m) lane = steadied(course, shown, step_m);
+    plan.lane = steadied(lane, left, step_m);
     plan.lane.trusted_m = std::min(run_.path.steady_trust_m(trust.length_m, until_m), plan.lane.length_m);
     keep_path(plan);
     return true;

@@ -55,12 +55,6 @@ Point RigidShift::operator()(const Point& point) const {
     return about + by + Point(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y());
 }
 
-RigidShift RigidShift::towards(const RigidShift& other, double share, const Point& place) const {
-    const Point here = (*this)(place);
-    return {place, turn_rad + share * (other.turn_rad - turn_rad),
-            here + share * (other(place) - here) - place};
-}
-
 void move(std::span<DrivablePoint> points, const RigidShift& shift) {
     for (DrivablePoint& point : points) {
         point.position = shift(point.position);

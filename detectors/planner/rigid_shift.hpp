@@ -17,8 +17,6 @@ struct RigidShift {
     Point by{0.0, 0.0};
 
     [[nodiscard]] Point operator()(const Point& point) const;
-    /// A share of the way from this shift to another one, by what the two do near a place.
-    [[nodiscard]] RigidShift towards(const RigidShift& other, double share, const Point& place) const;
 };
 
 /// The same points in the moved map.

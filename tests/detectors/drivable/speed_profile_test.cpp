@@ -58,16 +58,6 @@ TEST(SpeedProfile, StopsBetweenTwoPointsAndCountsTheTime) {
     EXPECT_TRUE(speed_profile({}).empty());
 }
 
-TEST(SpeedProfile, NeverLeavesTheFrictionEllipse) {
-    const VehicleLimits limits{9.0, 6.0, 6.0, 25.0};
-    const DrivableLane lane = bends();
-    const auto profile = speed_profile(lane, limits, {5.0, 35.0});
-    for (std::size_t i = 0; i + 1 < 35; ++i) {
-        const double across = profile[i].v_mps * profile[i].v_mps * lane.points[i].curvature_1pm / 9.0;
-        EXPECT_LE(std::hypot(across, profile[i].a_mps2 / 6.0), 1.0 + 1e-9) << i;
-    }
-}
-
 TEST(SpeedProfile, RefusesWhatIsNoLimit) {
     EXPECT_THROW((void)speed_profile(bends(), {.a_drive_mps2 = 0.0}), InvalidInput);
     EXPECT_THROW((void)speed_profile(bends(), {.v_max_mps = std::nan("")}), InvalidInput);

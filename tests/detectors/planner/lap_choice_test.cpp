@@ -235,19 +235,14 @@ class OvalWithRivals {
         }
         return seen;
     }
-    /// The next five gates, those more than `leaves_m` ahead from the second row.
-    [[nodiscard]] Lane lane(const Scene& scene, double s_m, double leaves_m) const {
-        const auto leaves = [&](double gate_m) { return gate_m - s_m > leaves_m; };
-        return lane(scene, s_m, leaves, leaves);
-    }
-    /// The same, those from the second row whose place along the course the test names, by side.
-    template <typename Left, typename Right>
-    [[nodiscard]] Lane lane(const Scene& scene, double s_m, Left is_left, Right is_right) const {
+    /// The next five gates, those more than `leaves_m` ahead from the second row; on the right only, or on
+    /// both sides.
+    [[nodiscard]] Lane lane(const Scene& scene, double s_m, double leaves_m, bool on_both = true) const {
         Lane result;
         for (const int gate : ahead(s_m)) {
-            const double gate_m = gate * spacing_m_;
-            result.left.push_back(cone_at(scene, at(gate, is_left(gate_m)).first).value());
-            result.right.push_back(cone_at(scene, at(gate, is_right(gate_m)).second).value());
+            const bool is_rival = gate * spacing_m_ - s_m > leaves_m;
+            result.left.push_back(cone_at(scene, at(gate, is_rival && on_both).first).value());
+            result.right.push_back(cone_at(scene, at(gate, is_rival).second).value());
         }
         return result;
     }
@@ -312,9 +307,8 @@ TEST(LapPlanner, AWrongLaneOfTheFirstLapIsLeftForATrustedOneAndForgotten) {
         make_lap_planner({.laps = 4}, std::make_unique<ScriptedDetector>([&](const Scene& scene) {
                              LaneAnswer answer;
                              answer.status = LaneStatus::found;
-                             answer.lane = oval.lane(
-                                 scene, s_m, [](double) { return false; },
-                                 [&](double gate_m) { return s_m < lap_m && is_in_wrong(gate_m); });
+                             const bool is_wrong = s_m < lap_m && is_in_wrong(s_m);
+                             answer.lane = oval.lane(scene, s_m, is_wrong ? -100.0 : 100.0, false);
                              answer.confidence = 0.95;
                              answer.trusted_m = 10.0;
                              return answer;
