@@ -232,6 +232,18 @@ void CourseMemory::observe(const Frame& frame, const ConeMemory& cones) {
     }
 }
 
+void CourseMemory::lean_on(const DrivableLane& seen) {
+    for (DrivablePoint& point : points_) {
+        const double ahead_m = point.s_m - points_.front().s_m;
+        if (ahead_m < settings_.leaning_from_m) continue;  // the lane joins the path near the car
+        if (ahead_m > settings_.leaning_to_m) break;
+        const Pose placed{laid_(point.position), point.heading_rad + laid_.turn_rad};
+        const auto foot = foot_on(seen, placed, 0.0, seen.length_m);
+        if (!foot || foot->offset_m > settings_.leaning_m) continue;
+        point.position += settings_.leaning_gain * (point_at(seen, foot->s_m).position - placed.position);
+    }
+}
+
 LaneTrust CourseMemory::trust(const DrivableLane& lane, const ConeMemory& cones) const {
     if (lane.points.empty()) return {0.0, "the course is not ahead of the car"};
     if (fit_ <= 0) return {0.0, "the cones do not fit the course"};

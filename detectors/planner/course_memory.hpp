@@ -32,6 +32,8 @@ class CourseMemory {
     void record(const DrivableLane& lane, const ConeMemory& cones);
     /// Compares the cones beside the course ahead with those of a frame, which `cones` has observed.
     void observe(const Frame& frame, const ConeMemory& cones);
+    /// Moves the course ahead of the car towards the lane of a frame that runs beside it.
+    void lean_on(const DrivableLane& seen);
     void move_along(const RigidShift& shift);
 
     [[nodiscard]] bool closed() const { return closed_; }

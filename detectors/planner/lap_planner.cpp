@@ -163,6 +163,7 @@ bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, P
     DrivableLane lane = extended(shown, course, step_m);
     if (lane.length_m < course.length_m - kChoice.near_m) lane = steadied(course, shown, step_m);
     plan.lane = steadied(lane, left, step_m);
+    if (choice.fresh) run_.course.lean_on(*choice.fresh);
     plan.lane.trusted_m = std::min(run_.path.steady_trust_m(trust.length_m, until_m), plan.lane.length_m);
     keep_path(plan);
     return true;

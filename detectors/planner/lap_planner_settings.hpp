@@ -55,6 +55,10 @@ struct CourseSettings {
     double closing_m = 1.5;        ///< distance of the lane from the recorded course, along closing_length_m
     double closing_rad = 0.6;      ///< and difference of their headings
     double closing_length_m = 6.0;
+    double leaning_from_m = 3.0;     ///< of the car: from here on the course leans on the lane of each frame,
+    double leaning_to_m = 20.0;      ///< up to here,
+    double leaning_m = 1.0;          ///< where the two are so near,
+    double leaning_gain = 0.3;       ///< by this share of their distance
     double line_half_width_m = 4.0;  ///< half width of the start line, from its middle
     double line_away_m = 8.0;        ///< distance from the line before it counts again
     double gate_within_m = 20.0;  ///< distance from the first pose: farther orange cones are not a start line
