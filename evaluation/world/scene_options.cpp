@@ -62,9 +62,10 @@ Condition adapted(Condition condition, const SceneOptions& options) {
 std::span<const Condition> named_conditions() {
     constexpr double kDegree_rad = std::numbers::pi / 180.0;
     // Noise [m], pose noise [m] and [rad], misses; whether false positives persist.
-    static const std::array<Condition, 3> conditions{{{"paper"},
+    static const std::array<Condition, 4> conditions{{{"paper"},
                                                       {"car", 0.1, 0.3, 5.0 * kDegree_rad, 0.05, true},
-                                                      {"harsh", 0.2, 0.5, 8.0 * kDegree_rad, 0.1, true}}};
+                                                      {"harsh", 0.2, 0.5, 8.0 * kDegree_rad, 0.1, true},
+                                                      {"slam", 0.1, 0.1, 1.0 * kDegree_rad, 0.05, true}}};
     return conditions;
 }
 

@@ -49,6 +49,8 @@ struct Options {
     std::string replay = "unfinished";
     RaceOptions race;
     std::optional<int> laps;
+    double fov_deg = 180.0;
+    std::string speed = "6";
     double latency_ms = 50.0;
     double start_deg = 0.0;
     double drift_deg = 0.0;
@@ -65,6 +67,14 @@ struct WeightedCourse {
     RaceCourse course;
     std::shared_ptr<const WeightsBytes> weights = {};
 };
+
+/// Measures what the same car needs for a first lap and a later one, if it knows its pose and the course.
+void add_known_laps(const RaceCourse& course, const RaceOptions& as_raced, RaceResult& result) {
+    const RaceOptions options{
+        .sight = {}, .laps = 2, .by_safe = true, .limits = as_raced.limits, .latency_s = as_raced.latency_s};
+    const RaceResult known = race(course, options, truth_driver(course, options.laps, 60.0));
+    for (const std::size_t later : {0U, 1U}) result.by_lap[later].known_lap_s = known.by_lap[later].time_s;
+}
 
 std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
     return std::make_shared<const WeightsBytes>(read_front_weights_bytes(file));
@@ -142,6 +152,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 heat.result = race(course, race_options,
                                    make_driver(*entries[i].racer, course, race_options,
                                                weights ? std::optional(*weights) : std::nullopt));
+                if (race_options.by_safe) add_known_laps(course, race_options, heat.result);
                 // Keeps only the races that failed, and the first one, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();
@@ -180,7 +191,9 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"vary", options.vary},
             {"laps", options.race.laps},
             {"range_m", options.race.sight.range_m},
-            {"speed_mps", options.race.speed_mps},
+            {"fov_deg", options.fov_deg},
+            {"speed_mps", options.race.by_safe ? nlohmann::ordered_json("safe")
+                                               : nlohmann::ordered_json(options.race.speed_mps)},
             {"latency_ms", options.latency_ms},
             {"colors", options.race.sight.with_color},
             {"ids", options.ids},
@@ -210,7 +223,8 @@ class Outputs {
             if (heats[i].result.replay.empty()) continue;
             replay_.stream() << replay_json(heats[i], entries[i].course->course).dump() << "\n";
         }
-        const std::string table = race_table(heats, options.race.laps);
+        std::string table = race_table(heats, options.race.laps);
+        if (options.race.by_safe) table += "\n" + speed_table(heats);
         const std::string times = answer_time_table(heats);
         races_.stream() << json.dump(1) << "\n";
         table_.stream() << table;
@@ -242,6 +256,9 @@ void run_races(Options& options) {
     options.race.sight.condition = conditions_of(scene_options).front();
     options.race.sight.with_ids = options.ids == "tracked";
     options.race.fault = race_fault(options.fault);
+    options.race.sight.fov_rad = options.fov_deg * kDegree_rad;
+    options.race.by_safe = options.speed == "safe";
+    if (!options.race.by_safe) options.race.speed_mps = std::stod(options.speed);
     options.race.latency_s = options.latency_ms / 1000.0;
     options.race.start_error_rad = options.start_deg * kDegree_rad;
     options.race.drift_rad = options.drift_deg * kDegree_rad;
@@ -318,13 +335,20 @@ void add_race_command(CLI::App& program) {
                     "the car rolls and the last lap ends the race");
     command.add_flag("--vary", options->vary,
                      "acceleration and skidpad: each seed draws another course within the rules");
-    command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
+    command.add_option("--condition", options->condition, "paper, car, harsh or slam")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
     command.add_option("--range", options->race.sight.range_m, "radius of the visible half disc [m]")
         ->capture_default_str();
     command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
         ->check(CLI::Range(1, 1000));
-    add_number_option(command, "--speed", options->race.speed_mps, 0.5, 40.0, "speed of the car [m/s]");
+    add_number_option(command, "--fov", options->fov_deg, 20.0, 180.0,
+                      "angle of view, in the middle ahead [degrees]");
+    command
+        .add_option("--speed", options->speed,
+                    "speed of the car [m/s]; safe: as fast as the path and its trusted length allow")
+        ->check((CLI::Range(0.5, 40.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case)) |
+                CLI::IsMember({"safe"}))
+        ->capture_default_str();
     command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
     add_number_option(command, "--latency-ms", options->latency_ms, 0.0, 1000.0,
                       "simulated time from a frame to its path");

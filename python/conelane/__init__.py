@@ -12,7 +12,7 @@ input raises a `ValueError`.
 from enum import IntEnum
 
 from . import _core
-from ._core import Answer, Detector, DrivableLane, Lane, Plan, Planner, RldSolution, Scene, methods, rld_parameters, solve_rld
+from ._core import Answer, Detector, DrivableLane, Lane, Plan, Planner, RldSolution, Scene, methods, rld_parameters, solve_rld, speed_profile
 from ._core import version as __version__
 
 try:
@@ -23,7 +23,7 @@ except ImportError:  # a build of the core alone
 
 _ALL = ["Answer", "Boundaries", "Color", "Detector", "DrivableLane", "Lane", "NO_ID", "Plan", "Planner", "RldSolution", "Scene", "Score",
         "Track", "generate_scenes", "load_tracks", "methods", "read_boundaries", "read_lanes", "read_scenes", "rld_parameters", "score",
-        "solve_rld", "write_boundaries", "write_lanes", "write_scenes"]
+        "solve_rld", "speed_profile", "write_boundaries", "write_lanes", "write_scenes"]
 __all__ = [name for name in _ALL if name in ("Color", "NO_ID") or hasattr(_core, name)]
 
 NO_ID = -(2**63)  # of a cone that has none, among ids of `Planner.update`

@@ -162,7 +162,7 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
              {[](SceneOptions& o) { o.color_unknown_rate = 0.1; }, "color-unknown: needs scenes with colour"},
              {[](SceneOptions& o) { o.threads = 0; }, "threads: must be in [1, 1024]"},
              {[](SceneOptions& o) { o.conditions = {"rain"}; },
-              "condition: 'rain' is not one of paper, car, harsh"},
+              "condition: 'rain' is not one of paper, car, harsh, slam"},
              {[](SceneOptions& o) {
                   o.conditions = {"car", "car"};
               },
