@@ -184,7 +184,7 @@ TEST(PathPair, ADeadlineAtAnyCheckMakesNoFalseProof) {
     int cut_short = 0;
     int rises = 0;
     std::uint64_t run = 0;
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 30), {});
         SearchClock no_limit;
         ArcGraph graph;
