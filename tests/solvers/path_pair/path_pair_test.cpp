@@ -64,6 +64,23 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
     }
 }
 
+/// Without the frontiers, and with the smoothed ascent at the first step, on strewn cones that are dense.
+TEST(PathPair, AgreesWithCbcAfterASmoothedAscent) {
+    PathPairOptions options{.search_frontiers = false};
+    options.tuning.ascent.smoothed_step = 0;
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver(options);
+    const std::unique_ptr<RldSolver> cbc = kCbc.entry.make(Formulation::tight);
+    int feasible = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::strewn_scene(8 + seed % 7, 12.0, 8.0, seed);
+        RldParameters parameters;
+        if (seed % 3 == 0) parameters.pairing = Pairing::paper;
+        if (tests::agrees(solve(*path_pair, scene, parameters), solve(*cbc, scene, parameters))) ++feasible;
+    }
+    EXPECT_GT(feasible, 20);
+}
+
 /// The optimum as a start is kept, another lane graph is improved, an invalid one is dropped.
 TEST(PathPair, StartsFromALaneGraph) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
@@ -167,7 +184,7 @@ TEST(PathPair, ADeadlineAtAnyCheckMakesNoFalseProof) {
     int cut_short = 0;
     int rises = 0;
     std::uint64_t run = 0;
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 30), {});
         SearchClock no_limit;
         ArcGraph graph;
