@@ -126,12 +126,6 @@ std::vector<PassedCone> passes_of(const Track& run, std::size_t cone, std::span<
     return passes;
 }
 
-double length_of(std::span<const Segment> path) {
-    double length_m = 0.0;
-    for (const Segment& part : path) length_m += (part.to - part.from).norm();
-    return length_m;
-}
-
 constexpr std::size_t kConfirmingFrames = 5;  ///< in which a cone of a boundary without colors is seen
 constexpr double kNextToPath_m = 0.8;         ///< the car would hit a cone that is nearer
 
@@ -217,7 +211,7 @@ bool set_boundaries_along(std::span<const Point> path, Track& run, bool by_color
         std::vector<PassedCone> side;
         std::ranges::copy_if(all, std::back_inserter(side),
                              [&](const PassedCone& cone) { return cone.left == is_left; });
-        if (!by_color) side = evenly_beside(side, length_of(driven));
+        if (!by_color) side = evenly_beside(side, polyline_length_m(lap.path, lap.closed));
         for (const PassedCone& cone : side) (is_left ? bounded.left : bounded.right).push_back(cone.cone);
     }
     const std::size_t fewest = lap.closed ? kMinConesOfALap : 2;

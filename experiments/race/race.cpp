@@ -55,10 +55,6 @@ Point left_of(const Pose& pose) {
     return {-pose.heading().y(), pose.heading().x()};
 }
 
-Point direction(double angle_rad) {
-    return {std::cos(angle_rad), std::sin(angle_rad)};
-}
-
 /// Whether a line moved by more than kUnsteady_m within kNear_m of the car, where both lines exist.
 bool moved(const std::vector<Point>& before, const std::vector<Point>& now) {
     double along_m = 0.0;
@@ -242,11 +238,12 @@ class Sensor {
             return step > 0 && std::fmod(time_s + 1e-9, every_s) < kFrame_s / 2.0;
         };
         if (options_.fault == RaceFault::jump && comes(kFaultEvery_s)) {
-            first_map_.shift += kJump_m * direction(uniform(random_, -std::numbers::pi, std::numbers::pi));
+            first_map_.shift +=
+                kJump_m * Pose{{0.0, 0.0}, uniform(random_, -std::numbers::pi, std::numbers::pi)}.heading();
         }
         if (options_.fault == RaceFault::ids && comes(kFaultEvery_s)) world_.change_ids();
         map_ = first_map_.turned(drift_sense_ * options_.drift_rad * share, start_,
-                                 options_.drift_m * share * direction(drift_direction_rad_));
+                                 options_.drift_m * share * Pose{{0.0, 0.0}, drift_direction_rad_}.heading());
         const Pose believed = world_.disturbed(car.vehicle.pose);
         car.believe(believed);
         Frame frame = world_.look(believed, map_, time_s);

@@ -52,7 +52,7 @@ def over(rows, key, weight="scenes"):
 
 def pair(shares, digits=(1, 1)):
     """Two shares in per cent; a dash without them."""
-    return percent(None) if shares is None else " / ".join(map(percent, shares, digits))
+    return percent(None) if shares is None else "/".join(map(percent, shares, digits))
 
 
 def both(row):

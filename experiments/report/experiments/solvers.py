@@ -9,7 +9,7 @@ from ..load import Missing, Sample
 from ..records import NUMBER, TEXT, WHOLE
 from ..summaries import quantile
 from ..tables import Cell, Column, column, count, fixed, milliseconds, percent, short, table, text
-from ..theme import MARKERS, series_style
+from ..theme import MARKERS, SURFACE, series_style
 from .speed import ratio
 
 FILE = "backends.jsonl"
@@ -64,11 +64,12 @@ def times_figure(results):
             of_engine.setdefault("clc, a graph search without proof", {})[sample.nearest or 0] = sample.latency[common]
     curves = []
     for index, (engine, times) in enumerate(of_engine.items()):
+        marker = {"marker": MARKERS[index % len(MARKERS)]} | ({"markerfacecolor": SURFACE} if index >= len(MARKERS) else {})  # then hollow
         for share, label, style in ((0.5, engine, {}), (0.95, "", THIN)):
             points = [(place, quantile(times[nearest], share)) for place, nearest in enumerate(sizes) if nearest in times]
             if any(np.isfinite(time) for _, time in points):  # a gap where it is not known
-                curves.append(Curve(label, np.where(np.isfinite(points), points, np.nan), series_style(index) | {"marker": MARKERS[index % len(MARKERS)]} | style))
-    figure, axes = chart(curves, "nearest cones in the set", "time [ms], thin: p95", height=3.4, log="y")
+                curves.append(Curve(label, np.where(np.isfinite(points), points, np.nan), series_style(index) | marker | style))
+    figure, axes = chart(curves, "nearest cones in the set", "time [ms], thin: p95", height=2.9 + 0.19 * len(of_engine), log="y")
     axes.set_xticks(range(len(sizes)), [_size_name(nearest) for nearest in sizes])
     return figure, axes
 
