@@ -55,7 +55,7 @@ def time(value):
 
 def size_table(rows):
     versions = {row["backend"]: row["version"] for row in reversed(rows)}
-    return by_size("solver, formulation", rows, {only(backend=backend): f"`{backend}`, {version}" for backend, version in reversed(versions.items())},
+    return by_size("solver, formulation", rows, {only(backend=backend): f"`{backend}`, {version.partition(' (git')[0]}" for backend, version in reversed(versions.items())},
                    lambda row: f"{time(row['median_ms'])}/{time(row['p95_ms'])}/{percent(row['solved'] / row['scenes'])}")
 
 
