@@ -171,7 +171,6 @@ bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, P
 
 /// The path of this frame.
 void LapPlanner::keep_path(Plan& plan) {
-    even_curvatures(plan.lane);
     run_.path.remember(plan.lane, *run_.time_s);
     plan.state = PlanState::following;
     plan.safe_m = *plan.lane.trusted_m;

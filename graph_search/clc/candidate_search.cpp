@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -128,7 +129,7 @@ bool CandidateSearch::find_beam_guide(const Scene& scene, Report& report) {
     const std::size_t best = beam_.run(half);
     if (half.stopped_by) report.stopped_by = half.stopped_by;
     if (best == LaneBeam::kNone) return false;
-    beam_guide_ = beam_.vertices(best);
+    beam_guide_ = beam_.vertices(best, std::move(beam_guide_));
     return true;
 }
 
@@ -187,9 +188,12 @@ void CandidateSearch::add_scene_features(const Scene& scene) {
 
 Lane CandidateSearch::lane(const PathPair& pair, const Scene& scene) {
     Lane lane;
-    const PathPairVertices vertices = pairs_.vertices(pair);
-    for (const Vertex vertex : vertices[kLeft]) lane.left.push_back(scene.cones[vertex].id);
-    for (const Vertex vertex : vertices[kRight]) lane.right.push_back(scene.cones[vertex].id);
+    vertices_ = pairs_.vertices(pair, std::move(vertices_));
+    for (const Side side : {kLeft, kRight}) {
+        std::vector<ConeId>& ids = side == kLeft ? lane.left : lane.right;
+        ids.reserve(vertices_[side].size());
+        for (const Vertex vertex : vertices_[side]) ids.push_back(scene.cones[vertex].id);
+    }
     lane.closed = pair.closed;
     return lane;
 }

@@ -117,7 +117,8 @@ class CandidateSearch {
     PathPairVertices remaining_;
     LaneBeam beam_;
     PathPairVertices beam_guide_;
-    std::vector<Seed> seeds_;  ///< the first seed_count_ are in use; the others keep their memory
+    PathPairVertices vertices_;  ///< scratch
+    std::vector<Seed> seeds_;    ///< the first seed_count_ are in use; the others keep their memory
     std::size_t seed_count_ = 0;
     PathPairEnumeration enumeration_;
     PathPairs pairs_;

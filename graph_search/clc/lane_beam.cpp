@@ -234,8 +234,8 @@ std::size_t LaneBeam::run(SearchBudget& budget) {
     return best_.parent == kNone ? kNone : extend(best_.parent, best_.vertex);
 }
 
-PathPairVertices LaneBeam::vertices(std::size_t number) const {
-    PathPairVertices vertices;
+PathPairVertices LaneBeam::vertices(std::size_t number, PathPairVertices vertices) const {
+    for (std::vector<Vertex>& side : vertices) side.clear();
     for (; states_[number].parent != kNone; number = states_[number].parent) {
         const State& state = states_[number];
         vertices[state.pushed].push_back(state.last[state.pushed]);

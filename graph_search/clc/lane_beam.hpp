@@ -115,7 +115,8 @@ class LaneBeam {
     /// Best first.
     [[nodiscard]] std::span<const std::size_t> level() const { return level_; }
     [[nodiscard]] const State& state(std::size_t number) const { return states_[number]; }
-    [[nodiscard]] PathPairVertices vertices(std::size_t number) const;
+    /// `vertices` gives its memory.
+    [[nodiscard]] PathPairVertices vertices(std::size_t number, PathPairVertices vertices = {}) const;
     /// The side that the state grows by.
     [[nodiscard]] Side next_side(const State& state) const;
 

@@ -69,8 +69,8 @@ std::uint32_t PathPairs::add_step(std::uint32_t before, Side side, Vertex vertex
     return static_cast<std::uint32_t>(steps_.size() - 1);
 }
 
-PathPairVertices PathPairs::vertices(const PathPair& pair) const {
-    PathPairVertices vertices;
+PathPairVertices PathPairs::vertices(const PathPair& pair, PathPairVertices vertices) const {
+    for (std::vector<Vertex>& side : vertices) side.clear();
     for (std::uint32_t step = pair.last_step; step != kNone; step = steps_[step].before)
         vertices[steps_[step].side].push_back(steps_[step].vertex);
     for (std::vector<Vertex>& side : vertices) std::ranges::reverse(side);

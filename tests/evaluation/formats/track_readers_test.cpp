@@ -340,7 +340,7 @@ TEST_F(TrackFiles, SpecOfAFolderLoadsAllFilesOfItsKindByName) {
 /// The help names each source once, in the order of the table.
 TEST(TrackFormats, AreNamedByTheHelp) {
     EXPECT_EQ(track_grammar(),
-              "generated:NAME[@SEED][,...], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE");
+              "generated:NAME[@SEED][,...], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE, ftlog:FILE or run:FILE");
     for (const TrackFormat* format : track_formats()) {
         EXPECT_THAT(track_format_lines(), HasSubstr(std::string(format->reads)));
         EXPECT_NE(format->read == nullptr, format->load == nullptr) << format->word;
