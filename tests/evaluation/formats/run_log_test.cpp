@@ -281,7 +281,9 @@ TEST_F(RunLog, ADrivenPathLabelsWhatTheCarSaw) {
                                  "\n",
                                  pose.position.x(), pose.position.y(), pose.yaw_rad, fmt::join(cones, ", "));
         }
-        const Track run = read_driven_run(file_with(lines, "lap.frames.jsonl"));
+        const auto file = file_with(lines, "lap.frames.jsonl");
+        EXPECT_EQ(load_tracks("run:" + file.parent_path().string()).size(), 1U) << "all files of its folder";
+        const Track run = read_driven_run(file);
         EXPECT_EQ(run.name, "run_lap");
         EXPECT_EQ(run.closed, course.closed) << name;
         const TrackBoundaries truth = boundaries(course);
