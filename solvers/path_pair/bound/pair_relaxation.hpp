@@ -106,6 +106,9 @@ class PairRelaxation {
         return !system_.ends_are_partners ||
                (graph_.are_partners(cone, other) && decisions_.ends_fit(cone, other));
     }
+    /// By cone: F, and h.
+    [[nodiscard]] std::span<const double> best(int kind) const { return legs_[to_index(kind)].best; }
+    [[nodiscard]] std::span<const double> rest(int kind) const { return legs_[to_index(kind)].rest; }
     /// The cones at which the legs of the bound end; -1 without legs.
     [[nodiscard]] const std::array<int, 2>& ends() const { return ends_; }
     [[nodiscard]] bool may_end(const ResidualGraph& residual, int kind, int arc) const;

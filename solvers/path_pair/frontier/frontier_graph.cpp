@@ -18,6 +18,7 @@ constexpr std::size_t kWorkPerFrontier = 200;  ///< in steps of the clock
 /// nothing.
 constexpr std::size_t kReservedFrontiers = std::size_t{1} << 18U;
 constexpr std::size_t kMaxFirstFrontiers = 1'000'000;
+constexpr int kFewFrontiers = 3000;  ///< With more, the bounds of partners are worth their time.
 
 }  // namespace
 
@@ -180,6 +181,7 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
     open_at_.assign(residual.arc.size(), -1);
     open_arcs_.assign((residual.arc.size() + 63) / 64, 0);
     moving_ = 0;
+    has_partners_ = false;
     table_.assign(kFewSlots, -1);
     begin(limit);
     if (clock_.expired() || now_.frontiers.size() > kMaxFirstFrontiers) {
@@ -221,6 +223,13 @@ bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     return intersect_with_union(dominated_.row(to_index(to)), dominated_.row(to_index(from)), own, words);
 }
 
+bool FrontierGraph::may_pass(const Frontier& frontier, double forward, double limit) const {
+    if (!has_partners_) return true;
+    return forward + (frontier.ended ? partners_.onward_to_partner(frontier.moving, frontier.waiting)
+                                     : partners_.onward(frontier.moving, frontier.waiting)) <
+           limit;
+}
+
 /// Lowers the forward costs of the frontiers after this one. False if there are too many.
 bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
     const Frontier here = frontier(f);
@@ -230,7 +239,15 @@ bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
     const double forward = now_.forward[to_index(f)];
     const double waiting = here.ended ? 0.0 : leg_onward_[to_index(other)][to_index(here.waiting)];
     if (!(forward + leg_onward[to_index(here.moving)] + waiting < limit)) return true;
-    if (now_.end[to_index(f)] == 0) add_steps(f, limit);
+    if (now_.end[to_index(f)] == 0) {
+        if (!has_partners_ && size() > kFewFrontiers && relaxation_.symmetric() &&
+            relaxation_.system().ends_are_partners) {
+            if (!partners_.find(relaxation_, *residual_, limit, clock_)) return false;
+            has_partners_ = true;
+        }
+        if (!may_pass(here, forward, limit)) return true;
+        add_steps(f, limit);
+    }
     for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
         const auto [known, arc, turn] = now_.steps[p];
         if (edges_ != nullptr && arc >= 0 &&
@@ -242,7 +259,9 @@ bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
         if (!(label + on + waiting < limit)) continue;
         int to = known;
         if (to < 0) {
-            now_.steps[p].to = to = number(after(here, arc, static_cast<std::uint8_t>(other)));
+            const Frontier next = after(here, arc, static_cast<std::uint8_t>(other));
+            if (!may_pass(next, label, limit)) continue;
+            now_.steps[p].to = to = number(next);
             if (now_.frontiers.size() > max_frontiers) return false;
         }
         const bool narrowed = narrow_dominated(f, to, arc);

@@ -2,6 +2,7 @@
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
+#include "solvers/path_pair/frontier/partner_bounds.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
@@ -131,6 +132,8 @@ class FrontierGraph {
     void open(int f);
     bool narrow_dominated(int from, int to, int arc);
     bool extend(int f, double limit, std::size_t max_frontiers);
+    /// Whether a walk on from the frontier to partners may stay below the limit.
+    [[nodiscard]] bool may_pass(const Frontier& frontier, double forward, double limit) const;
     void add_steps(int f, double limit);
     /// `other`: the kind of the leg that waits.
     [[nodiscard]] static Frontier after(const Frontier& frontier, int arc, std::uint8_t other);
@@ -146,6 +149,8 @@ class FrontierGraph {
     const DominatedEdges* dominated_of_arcs_ = nullptr;
     const EdgeSets* edges_ = nullptr;                ///< of the build, if it looks for dominated edges
     std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc
+    PartnerBounds partners_;
+    bool has_partners_ = false;
     Arrays now_;
     std::vector<int> starts_;
 
