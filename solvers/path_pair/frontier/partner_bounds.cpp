@@ -6,7 +6,7 @@ namespace conelane::path_pair {
 namespace {
 
 constexpr double kSmallestGain = 1e-12;  ///< Smaller gains are rounding.
-constexpr double kNoWay = 1e100;  ///< Unlike infinity, its differences are numbers.
+constexpr double kNoWay = 1e100;         ///< Unlike infinity, its differences are numbers.
 
 }  // namespace
 

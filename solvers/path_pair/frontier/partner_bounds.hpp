@@ -33,9 +33,9 @@ class PartnerBounds {
         return &to_partner_[to_index(arc) * ends_.size()];
     }
 
-    std::vector<int> ends_;          ///< cones
-    std::vector<int> end_of_arc_;    ///< number of the end at its head; -1 if a leg must not end with it
-    std::vector<double> to_end_;     ///< by arc and end
+    std::vector<int> ends_;        ///< cones
+    std::vector<int> end_of_arc_;  ///< number of the end at its head; -1 if a leg must not end with it
+    std::vector<double> to_end_;   ///< by arc and end
     std::vector<double> to_partner_;
 
     // Scratch.

@@ -8,6 +8,7 @@
 #include "solvers/path_pair/frontier/frontier_graph.hpp"
 #include "solvers/path_pair/frontier/frontier_search.hpp"
 #include "solvers/path_pair/frontier/onward_tables.hpp"
+#include "solvers/path_pair/frontier/partner_bounds.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -301,6 +302,33 @@ TEST(PathPairFrontierGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
     }
     EXPECT_GT(with_lane, 30);
     EXPECT_GT(higher, 30);
+}
+
+/// What two legs cost on to partners is no less than each of them alone, and no more than both abreast.
+TEST(PathPairPartnerBounds, LieBetweenSingleLegsAndLegsAbreast) {
+    int higher = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Frontiers s(random_problem(seed, 14), seed);
+        ASSERT_TRUE(s.build());
+        s.frontiers.find_onward(kUnreachable);
+        std::vector<double> alone;
+        s.relaxation.onward(s.residual, 0, alone);
+        PartnerBounds partners;
+        ASSERT_TRUE(partners.find(s.relaxation, s.residual, kUnreachable, s.clock));
+        for (int f = 0; f < s.frontiers.size(); ++f) {
+            const FrontierGraph::Frontier& here = s.frontiers.frontier(f);
+            const double single =
+                alone[to_index(here.moving)] + (here.ended ? 0.0 : alone[to_index(here.waiting)]);
+            const double bound = here.ended ? partners.onward_to_partner(here.moving, here.waiting)
+                                            : partners.onward(here.moving, here.waiting);
+            ASSERT_GE(bound, single - 1e-9);
+            const double abreast = s.frontiers.onward(f);
+            ASSERT_TRUE(abreast == kUnreachable || bound <= abreast + 1e-9);
+            higher += bound > single + 1e-6 && bound < 1e6 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(higher, 100);
 }
 
 /// Of both legs the one that stands earlier moves, so every pair is one walk.
