@@ -3,7 +3,8 @@
     conelane solve --solver "exec:scip=build/solvers/bin/python experiments/adapters/engines.py scip" ...
 
 An engine stays running. `engines.py NAME {mps} {sol} {limit_s} {gap} {threads} {seed}` answers one program and ends. Engines have their
-default settings but for limits, gap, threads and seed."""
+default settings but for limits, gap, threads and seed, and for what follows the name: `scip:heuristics=off,lp/pricing=s`, names and values
+as the engine has them."""
 
 import math
 import os
@@ -27,6 +28,9 @@ def highs(ask):
     for option, value in (("time_limit", ask.limit_s), ("mip_rel_gap", 0.0), ("mip_abs_gap", ask.gap), ("threads", ask.threads),
                           ("random_seed", ask.seed % SEEDS)):
         model.setOptionValue(option, value)
+    for option, value in ask.settings.items():
+        if model.setOptionValue(option, value) != highspy.HighsStatus.kOk:
+            raise ValueError(f"no setting {option}={value}")
     if ask.cutoff is not None:
         model.setOptionValue("objective_bound", ask.cutoff)
     ask.clock(model.run)
@@ -89,6 +93,12 @@ def scip(ask):
         model.includeConshdlr(NoCycles(), "no-cycles", "the rows (5)", enfopriority=-10, chckpriority=-10, needscons=False)
     model.setParams({"limits/time": ask.limit_s, "limits/gap": 0.0, "limits/absgap": ask.gap, "randomization/randomseedshift": ask.seed % SEEDS,
                      "misc/allowstrongdualreds": not lazily, "misc/allowweakdualreds": not lazily})
+    groups = {"presolving": model.setPresolve, "heuristics": model.setHeuristics, "separating": model.setSeparating}
+    for name, value in ask.settings.items():
+        if name in groups:
+            groups[name](getattr(pyscipopt.SCIP_PARAMSETTING, str(value).upper()))
+        else:
+            model.setParam(name, value)
     if ask.cutoff is not None:
         model.setObjlimit(ask.cutoff)
     ask.clock(model.optimize)
@@ -123,6 +133,8 @@ def cp_sat(ask):
     settings = solver.parameters
     settings.max_time_in_seconds, settings.num_workers, settings.random_seed = ask.limit_s, ask.threads, ask.seed % SEEDS
     settings.absolute_gap_limit = settings.relative_gap_limit = 0.0
+    for name, value in ask.settings.items():
+        setattr(settings, name, value)
     status = ask.clock(solver.solve, model)
     has_point = status in (cp_model.OPTIMAL, cp_model.FEASIBLE)
     values = {name: solver.value(variable) / unit[name] for name, variable in column.items()} if has_point else None
@@ -242,7 +254,7 @@ def cbc(ask):
     except ImportError:
         program = "cbc"
     log = ask.run(program, ask.program, "-timeMode", "elapsed", "-sec", f"{ask.limit_s:.3f}", "-allow", f"{ask.gap:g}", "-ratio", "0",
-                  "-increment", "1e-7", "-threads", str(ask.threads if ask.threads > 1 else 0), *(["-randomCbcSeed", str(ask.seed % SEEDS)] if ask.seed else []),
+                  "-increment", "1e-7", *ask.arguments("-"), "-threads", str(ask.threads if ask.threads > 1 else 0), *(["-randomCbcSeed", str(ask.seed % SEEDS)] if ask.seed else []),
                   "-solve", "-solution", ask.solution)
     head, *lines = written(ask) or ["nothing"]
     claim = "infeasible" if "nfeasible" in head else "optimal" if head.startswith("Optimal") else "stopped"
@@ -255,7 +267,7 @@ def cbc(ask):
 
 def glpk(ask):
     """Debian's glpk-utils, with its cuts; whole seconds only, no bound."""
-    log = ask.run("glpsol", "--freemps", ask.program, "--cuts", "--tmlim", str(math.ceil(ask.limit_s)), "--mipgap", "0", "--write", ask.solution)
+    log = ask.run("glpsol", "--freemps", ask.program, "--cuts", "--tmlim", str(math.ceil(ask.limit_s)), "--mipgap", "0", *ask.arguments("--"), "--write", ask.solution)
     lines = [line.split() for line in written(ask)]
     status = next((line[4] for line in lines if line[0] == "s"), "u")
     values = {name: float(line[2]) for name, line in zip(ask.read().cost, (line for line in lines if line[0] == "j"))}
@@ -265,7 +277,7 @@ def glpk(ask):
 
 def symphony(ask):
     """Debian's coinor-symphony."""
-    log = ask.run("symphony", "-t", f"{ask.limit_s:.3f}", "-p", "0", "-F", ask.program)
+    log = ask.run("symphony", "-t", f"{ask.limit_s:.3f}", "-p", "0", *ask.arguments("-"), "-F", ask.program)
     claim = "optimal" if "Optimal Solution Found" in log else "infeasible" if "nfeasible" in log else "stopped"
     listed = log.partition("Column names and values of nonzeros")[2].partition("\n\n")[0]
     values = columns_in("\n".join(line for line in listed.splitlines() if re.match(r"[a-z]\S* +\S+ *$", line)), name=0, value=1)
@@ -277,7 +289,7 @@ def lp_solve(ask):
     """Debian's lp-solve; whole seconds only, no bound."""
     version = number(r"version (\S+):", ask.run("lp_solve", "-p", "parse"), str)
     ask.ms = 0.0
-    log = ask.run("lp_solve", "-fmps", ask.program, "-timeout", str(math.ceil(ask.limit_s)), "-S4")
+    log = ask.run("lp_solve", "-fmps", ask.program, "-timeout", str(math.ceil(ask.limit_s)), "-S4", *ask.arguments("-"))
     is_proven = "Value of objective function" in log and not re.search("sub-?optimal", log, flags=re.I)
     claim = "infeasible" if "problem is infeasible" in log else "optimal" if is_proven else "stopped"
     listed = (log + "\n").partition("Actual values of the variables:")[2].partition("Actual values of the constraints")[0]

@@ -27,6 +27,7 @@ class Question:
     threads: int = 1
     seed: int = 0
     cutoff: float | None = None  # only points with a lower objective are of use
+    settings: dict = dataclasses.field(default_factory=dict)  # of the engine, by name; numbers where they are numbers
     ms: float = 0.0  # time of the engine alone, without reading and building
     asked_s: float = dataclasses.field(default_factory=time.perf_counter)
 
@@ -34,6 +35,10 @@ class Question:
     def limit_s(self):
         """What is left: to be read when the program is built."""
         return max(LEAST_S, self.whole_limit_s - (time.perf_counter() - self.asked_s))
+
+    def arguments(self, dash):
+        """The settings for a command line; one without a value is a flag."""
+        return [word for name, value in self.settings.items() for word in (dash + name, str(value)) if word]
 
     def read(self):
         return mps.read_mps(self.program)
@@ -93,6 +98,18 @@ def verdict(question, answer):
     return told | {"status": "optimal" if answer.claim == "optimal" else "feasible"}
 
 
+def named(text):
+    """NAME[:SETTING[=VALUE],...]: the name, and values by setting."""
+    def number(value):
+        try:
+            return json.loads(value)
+        except ValueError:
+            return value
+    name, _, settings = text.partition(":")
+    pairs = (setting.partition("=") for setting in settings.split(",") if setting)
+    return name, {setting: number(value) for setting, _, value in pairs}
+
+
 def answered(engine, question):
     try:
         return verdict(question, engine(question))
@@ -112,11 +129,12 @@ def serve(engines, words):
         for name, (_, needs) in engines.items():
             print(f"{name:11} {'installed' if is_there(needs) else 'missing: ' + ' or '.join(needs)}")
         return
-    if not words or words[0] not in engines:
+    name, settings = named(words[0] if words else "")
+    if name not in engines:
         raise SystemExit(f"engines.py: name one of {' '.join(engines)}")
-    engine, needs = engines[words[0]]
+    engine, needs = engines[name]
     if not is_there(needs):
-        raise SystemExit(f"engines.py: {words[0]} needs {' or '.join(needs)}: see experiments/solvers/install")
+        raise SystemExit(f"engines.py: {name} needs {' or '.join(needs)}: see experiments/solvers/install")
     # Some libraries print to the standard output, which belongs to the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
@@ -124,7 +142,7 @@ def serve(engines, words):
         importlib.import_module(package)
     if len(words) > 1:
         kinds = (str, str, float, float, int, int)
-        question = Question(*(kind(word) for kind, word in zip(kinds, words[1:])))
+        question = Question(*(kind(word) for kind, word in zip(kinds, words[1:])), settings=settings)
         told = answered(engine, question)
         if told["status"] == "error":
             raise SystemExit(told["message"])
@@ -134,7 +152,7 @@ def serve(engines, words):
     for line in sys.stdin:
         asked = json.loads(line)
         question = Question(asked["program"], asked["solution"], asked["time_limit_ms"] / 1000.0, asked["absolute_gap"],
-                            asked["threads"], asked["seed"], asked.get("cutoff"))
+                            asked["threads"], asked["seed"], asked.get("cutoff"), settings)
         told = answered(engine, question)
         print(json.dumps({key: value for key, value in told.items() if not (isinstance(value, float) and math.isnan(value))}),
               file=answers, flush=True)
