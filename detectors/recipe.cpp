@@ -1,21 +1,16 @@
 #include "detectors/recipe.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/drivable/drivable_answers.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_weights.hpp"
 #include "graph_search/shared/json_reader.hpp"
-#include "graph_search/shared/parameter_field.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <map>
-#include <utility>
 
 namespace conelane {
 namespace {

@@ -2,17 +2,10 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/rld_detector.hpp"
-#include "conelane/rld_solver.hpp"
 #include "graph_search/weights/weight_files.hpp"
 
 #include <array>
-#include <memory>
 #include <set>
-#include <span>
-#include <string>
-#include <string_view>
-#include <variant>
-#include <vector>
 
 namespace conelane {
 

@@ -4,10 +4,8 @@
 #include "model/deadline.hpp"
 #include "model/valid_scene_problem.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <new>
-#include <utility>
 
 namespace conelane {
 namespace {

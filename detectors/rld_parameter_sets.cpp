@@ -4,11 +4,7 @@
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "detectors/recipe.hpp"
 #include "graph_search/shared/json_reader.hpp"
-
-#include <algorithm>
-#include <functional>
-#include <set>
-#include <string>
+#include "graph_search/shared/weights_reader.hpp"
 
 namespace conelane {
 namespace {
@@ -61,6 +57,25 @@ const std::vector<ParameterSet>& parameter_sets() {
 }
 
 }  // namespace
+
+std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view text) {
+    WeightsReader file(text, "weights", "conelane train rld");
+    (void)file.version({1});
+    for (const LearnedPart part : kLearnedParts)
+        file.require_features("features." + std::string(to_string(part)), learned_features(part));
+    LearnedCosts costs;
+    for_each_costs_list(
+        costs, [&](const std::string& key, std::vector<double>& numbers) { numbers = file.numbers(key); });
+    file.require_no_other("learned costs");
+    validate(costs);
+    return std::make_shared<const LearnedCosts>(std::move(costs));
+}
+
+std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file) {
+    std::shared_ptr<const LearnedCosts> costs;
+    with_weights_file(file, [&](std::string_view text) { costs = parse_learned_costs(text); });
+    return costs;
+}
 
 std::vector<std::string_view> rld_parameter_set_names() {
     std::vector<std::string_view> names;

@@ -1,10 +1,6 @@
 #include "model/answer_verification.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

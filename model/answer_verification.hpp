@@ -2,8 +2,6 @@
 
 #include "conelane/lane_graph_problem.hpp"
 
-#include <string>
-
 namespace conelane {
 
 /// The verdict on an answer. It follows from the problem alone.

@@ -2,11 +2,7 @@
 
 #include "model/lane_graph_reference.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
-#include <utility>
 
 namespace conelane {
 namespace {

@@ -2,11 +2,7 @@
 
 #include "model/lane_graph_reference.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <set>
-#include <utility>
 
 namespace conelane {
 namespace {

@@ -1,11 +1,7 @@
 #include "model/connecting_flow.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cstdint>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -1,7 +1,5 @@
 #include "model/doubled_cones.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace conelane {

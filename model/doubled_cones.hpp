@@ -1,11 +1,6 @@
 #pragma once
 
 #include "conelane/lane_detector.hpp"
-#include "conelane/scene.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 namespace conelane {
 

@@ -5,8 +5,6 @@
 #include "model/binary_program.hpp"
 
 #include <array>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

@@ -1,8 +1,6 @@
 #include "model/geometry.hpp"
 
-#include <algorithm>
 #include <cassert>
-#include <cmath>
 
 namespace conelane {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "model/geometry.hpp"
 
-#include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 

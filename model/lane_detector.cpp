@@ -4,7 +4,6 @@
 #include "model/doubled_cones.hpp"
 
 #include <array>
-#include <cmath>
 #include <exception>
 #include <new>
 

@@ -2,7 +2,6 @@
 
 #include "model/geometry.hpp"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 #include <unordered_map>

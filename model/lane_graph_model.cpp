@@ -1,7 +1,6 @@
 #include "model/lane_graph_model.hpp"
 
 #include "model/constraints/families.hpp"
-#include "model/deadline.hpp"
 
 namespace conelane {
 namespace {

@@ -1,14 +1,6 @@
 #pragma once
 
-#include "conelane/lane_graph.hpp"
-#include "conelane/lane_graph_problem.hpp"
-#include "model/binary_program.hpp"
 #include "model/formulation_parts.hpp"
-
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

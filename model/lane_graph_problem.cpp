@@ -1,17 +1,12 @@
 #include "conelane/lane_graph_problem.hpp"
 
 #include "model/deadline.hpp"
-#include "model/geometry.hpp"
 #include "model/learned_features.hpp"
 #include "model/near_edges.hpp"
 #include "model/shape_costs.hpp"
 #include "model/valid_scene_problem.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
-#include <numbers>
 
 namespace conelane {
 namespace {

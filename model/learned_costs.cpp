@@ -3,10 +3,6 @@
 #include "conelane/invalid_input.hpp"
 #include "model/learned_features.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-
 namespace conelane {
 namespace {
 

@@ -3,9 +3,6 @@
 #include "model/geometry.hpp"
 #include "model/shape_costs.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace conelane {
 namespace {
 

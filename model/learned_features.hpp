@@ -2,12 +2,8 @@
 
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/learned_costs.hpp"
-#include "conelane/scene.hpp"
 
-#include <array>
-#include <cstddef>
 #include <functional>
-#include <vector>
 
 namespace conelane {
 

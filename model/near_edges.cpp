@@ -1,7 +1,5 @@
 #include "model/near_edges.hpp"
 
-#include <cmath>
-
 namespace conelane {
 
 bool come_closer(const MeasuredSegment& a, const MeasuredSegment& b, double limit_m) {

@@ -1,14 +1,9 @@
 #pragma once
 
 #include "conelane/lane_graph_problem.hpp"
-#include "conelane/scene.hpp"
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cstddef>
 #include <limits>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

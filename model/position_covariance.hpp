@@ -3,7 +3,6 @@
 #include "conelane/scene.hpp"
 
 #include <array>
-#include <optional>
 
 namespace conelane {
 

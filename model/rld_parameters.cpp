@@ -3,9 +3,6 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/learned_costs.hpp"
 
-#include <array>
-#include <string>
-
 namespace conelane {
 namespace {
 

@@ -4,9 +4,6 @@
 #include "model/geometry.hpp"
 #include "model/position_covariance.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <unordered_set>
 #include <utility>
 

@@ -2,11 +2,7 @@
 
 #include "conelane/lane_graph.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace conelane {
 

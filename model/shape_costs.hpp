@@ -1,13 +1,8 @@
 #pragma once
 
 #include "conelane/lane_graph_problem.hpp"
-#include "conelane/rld_parameters.hpp"
-#include "conelane/scene.hpp"
 
-#include <cstddef>
 #include <functional>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

@@ -1,20 +1,14 @@
 // The program `conelane`: one sub-command for each stage from tracks to tables.
 
-#include "evaluation/formats/interruption.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "experiments/options/command_line.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <span>
-#include <string_view>
 #include <system_error>
 
 #include <fcntl.h>

@@ -1,11 +1,6 @@
 #include "model/deadline.hpp"
 #include "solvers/core_entries.hpp"
 
-#include <algorithm>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 namespace conelane {
 namespace {
 

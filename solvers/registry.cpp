@@ -1,11 +1,7 @@
 #include "solvers/registry.hpp"
 
-#include "conelane/core_solvers.hpp"
 #include "conelane/milp_solvers.hpp"
 #include "conelane/relaxation_solvers.hpp"
-
-#include <algorithm>
-#include <vector>
 
 namespace conelane {
 

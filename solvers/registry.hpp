@@ -2,9 +2,6 @@
 
 #include "conelane/core_solvers.hpp"
 
-#include <span>
-#include <string_view>
-
 namespace conelane {
 
 /// All solvers of this build: those of the core and of the components milp and relaxations.

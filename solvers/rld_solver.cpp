@@ -2,14 +2,8 @@
 
 #include "model/answer_verification.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <new>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
 
 namespace conelane {
 namespace {

@@ -1,11 +1,7 @@
 #pragma once
 
 #include "conelane/drivable_lane.hpp"
-#include "conelane/lane_detector.hpp"
 #include "model/deadline.hpp"
-
-#include <memory>
-#include <optional>
 
 namespace conelane {
 

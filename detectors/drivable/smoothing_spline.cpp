@@ -1,8 +1,6 @@
 #include "detectors/drivable/smoothing_spline.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace conelane {
 namespace {

@@ -2,8 +2,6 @@
 
 #include "model/geometry.hpp"
 
-#include <cstddef>
-#include <span>
 #include <vector>
 
 namespace conelane {

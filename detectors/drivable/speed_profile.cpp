@@ -2,9 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <utility>
 
 namespace conelane {

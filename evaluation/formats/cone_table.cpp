@@ -1,14 +1,11 @@
 #include "evaluation/formats/cone_table.hpp"
 
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/input_error.hpp"
-#include "evaluation/world/track_checks.hpp"
+#include "evaluation/world/track.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>

@@ -1,21 +1,11 @@
 #include "evaluation/formats/cone_table.hpp"
-#include "evaluation/formats/track_readers.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/shortest_tour.hpp"
-#include "evaluation/world/track.hpp"
-#include "evaluation/world/track_checks.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <iterator>
 #include <limits>
-#include <map>
-#include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>

@@ -1,10 +1,8 @@
 #include "evaluation/formats/file_text.hpp"
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <new>
-#include <stdexcept>
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -3,10 +3,8 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/input_error.hpp"
 
-#include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <system_error>
 

@@ -5,11 +5,9 @@
 #include "conelane/stop_reason.hpp"
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/parameter_tag.hpp"
+#include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/input_error.hpp"
 
-#include <concepts>
-#include <functional>
 #include <istream>
 #include <map>
 #include <tuple>

@@ -6,10 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <ostream>
-#include <string>
 #include <unordered_set>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

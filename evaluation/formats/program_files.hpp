@@ -3,7 +3,6 @@
 #include "model/binary_program.hpp"
 
 #include <iosfwd>
-#include <string_view>
 
 namespace conelane {
 

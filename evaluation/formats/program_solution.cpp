@@ -7,7 +7,6 @@
 #include <istream>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <unordered_map>
 
 #include <fmt/format.h>

@@ -2,11 +2,7 @@
 
 #include "model/binary_program.hpp"
 
-#include <cstdint>
 #include <iosfwd>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace conelane {
 

@@ -1,9 +1,7 @@
 #pragma once
 
 #include "evaluation/formats/json_records.hpp"
-#include "evaluation/world/scene_options.hpp"
-
-#include <optional>
+#include "evaluation/world/scene_generation.hpp"
 
 namespace conelane {
 

@@ -2,15 +2,11 @@
 
 #include "evaluation/formats/scene_options_fields.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/input_error.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <iterator>
-#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace conelane {
 

@@ -3,13 +3,6 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/world/scene_generation.hpp"
 
-#include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <nlohmann/json_fwd.hpp>
 
 namespace conelane {

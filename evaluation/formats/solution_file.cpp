@@ -2,6 +2,8 @@
 
 #include "evaluation/formats/json_records.hpp"
 
+#include <unordered_map>
+
 namespace conelane {
 namespace {
 
@@ -35,6 +37,59 @@ struct ProvenBound {
     }
 };
 
+using Record = SearchCertificateRecord;
+
+/// `bound`, or `infeasible` if it is infinite.
+struct ClaimedBound {
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+    static void read(const JsonNode& json, CertificateClaim& claim) {
+        const auto bound = json.find("bound");
+        const auto infeasible = json.find("infeasible");
+        if (bound) claim.bound = bound->number();
+        if (!infeasible || !infeasible->boolean()) return;
+        if (bound) bound->fail("must be left out if the scene is called infeasible");
+        claim.bound = kInfinity;
+    }
+    static void put(nlohmann::ordered_json& json, const CertificateClaim& claim, const std::string& place) {
+        if (claim.bound != kInfinity) return put_bound(json, claim.bound, place + "bound");
+        json["infeasible"] = true;
+    }
+};
+
+constexpr std::tuple kClaim{Field{"scene", &CertificateClaim::scene},
+                            Field{"nearest", &CertificateClaim::nearest},
+                            Inlined{&CertificateClaim::parameters}};
+
+/// Indices of a scene's cones, and the first id that has none.
+class Indices {
+  public:
+    explicit Indices(const Scene& scene) {
+        for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of_.emplace(scene.cones[i].id, i);
+    }
+    std::size_t operator()(ConeId id) {
+        const auto found = index_of_.find(id);
+        if (found != index_of_.end()) return found->second;
+        if (!missing) missing = id;
+        return 0;
+    }
+    std::vector<Edge> operator()(const std::vector<Record::EdgeById>& edges) {
+        std::vector<Edge> indices;
+        for (const auto& [a, b] : edges) indices.push_back(make_edge((*this)(a), (*this)(b)));
+        return indices;
+    }
+    std::optional<ConeId> missing;
+
+  private:
+    std::unordered_map<ConeId, std::size_t> index_of_;
+};
+
+std::vector<Record::EdgeById> by_id(const Scene& scene, const std::vector<Edge>& edges) {
+    std::vector<Record::EdgeById> ids;
+    for (const Edge& edge : edges) ids.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
+    return ids;
+}
+
 }  // namespace
 
 template <>
@@ -64,6 +119,103 @@ std::vector<SolutionRecord> read_solutions(const std::filesystem::path& file) {
 
 void write_solutions(const std::filesystem::path& file, std::span<const SolutionRecord> records) {
     write_records(file, records, "solutions");
+}
+
+template <>
+inline constexpr std::tuple kFields<CertificateRecord::Clique>{
+    Field{"price", &CertificateRecord::Clique::multiplier},
+    Field{"edges", &CertificateRecord::Clique::edges}};
+template <>
+inline constexpr std::tuple kFields<CertificateRecord> = std::tuple_cat(
+    kClaim, std::tuple{ClaimedBound{}, Field{"heading_price", &CertificateRecord::heading_multiplier},
+                       Field{"cone_prices", &CertificateRecord::cone_multipliers},
+                       Field{"cliques", &CertificateRecord::cliques}});
+
+template <>
+inline constexpr std::tuple kFields<Record::Stage>{Field{"heading", &Record::Stage::heading},
+                                                   Field{"cones", &Record::Stage::cones},
+                                                   Field{"cliques", &Record::Stage::cliques}};
+template <>
+inline constexpr std::tuple kFields<Record::Part>{Field{"far_start", &Record::Part::far_start},
+                                                  Field{"cliques", &Record::Part::cliques},
+                                                  Field{"stages", &Record::Part::stages}};
+template <>
+inline constexpr std::tuple kFields<Record> =
+    std::tuple_cat(kClaim, std::tuple{Field{"edges", &Record::edges}, Field{"objective", &Record::objective},
+                                      ClaimedBound{}, Field{"parts", &Record::parts}});
+
+SearchCertificateRecord to_search_record(const Scene& scene, const SearchCertificate& certificate) {
+    Record record;
+    record.scene = scene.id;
+    if (certificate.lane_graph) record.edges = by_id(scene, certificate.lane_graph->edges);
+    record.objective = certificate.objective;
+    record.bound = certificate.bound;
+    for (const SearchCertificate::Part& part : certificate.parts) {
+        Record::Part& listed = record.parts.emplace_back();
+        if (part.far_start) listed.far_start = scene.cones[*part.far_start].id;
+        for (const auto& clique : part.cliques) listed.cliques.push_back(by_id(scene, clique));
+        for (const SearchCertificate::Stage& stage : part.stages) {
+            Record::Stage& listed_stage = listed.stages.emplace_back();
+            listed_stage.heading = stage.heading;
+            listed_stage.cliques = stage.clique;
+            for (std::size_t i = 0; i < stage.cone.size(); ++i) {
+                if (stage.cone[i] != 0) listed_stage.cones.emplace_back(scene.cones[i].id, stage.cone[i]);
+            }
+        }
+    }
+    return record;
+}
+
+std::optional<SearchCertificate> from_search_record(const Scene& scene, const SearchCertificateRecord& record,
+                                                    ConeId& missing) {
+    Indices index(scene);
+    SearchCertificate certificate;
+    if (record.edges) certificate.lane_graph = LaneGraph{index(*record.edges)};
+    certificate.objective = record.objective;
+    certificate.bound = record.bound;
+    for (const Record::Part& listed : record.parts) {
+        SearchCertificate::Part& part = certificate.parts.emplace_back();
+        if (listed.far_start) part.far_start = index(*listed.far_start);
+        for (const auto& clique : listed.cliques) part.cliques.push_back(index(clique));
+        for (const Record::Stage& listed_stage : listed.stages) {
+            SearchCertificate::Stage& stage = part.stages.emplace_back();
+            stage.heading = listed_stage.heading;
+            stage.clique = listed_stage.cliques;
+            stage.cone.assign(scene.cones.size(), 0);
+            for (const auto& [id, units] : listed_stage.cones) {
+                const std::size_t cone = index(id);
+                if (!index.missing) stage.cone[cone] = units;
+            }
+        }
+    }
+    if (!index.missing) return certificate;
+    missing = *index.missing;
+    return std::nullopt;
+}
+
+bool holds_search_certificates(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    std::getline(stream, line);
+    constexpr bool kThrows = false;
+    const nlohmann::json first = nlohmann::json::parse(line, nullptr, kThrows);
+    return first.is_object() && first.contains("parts");
+}
+
+std::vector<CertificateRecord> read_certificates(const std::filesystem::path& file) {
+    return read_records<CertificateRecord>(file);
+}
+
+std::vector<SearchCertificateRecord> read_search_certificates(const std::filesystem::path& file) {
+    return read_records<Record>(file);
+}
+
+void write_certificates(const std::filesystem::path& file, std::span<const CertificateRecord> records) {
+    write_records(file, records, "certificates");
+}
+
+void write_search_certificates(const std::filesystem::path& file, std::span<const Record> records) {
+    write_records(file, records, "certificates");
 }
 
 }  // namespace conelane

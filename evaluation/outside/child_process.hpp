@@ -1,9 +1,8 @@
 #pragma once
 
-#include "evaluation/formats/interruption.hpp"
+#include "evaluation/formats/atomic_file.hpp"
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 

@@ -1,12 +1,8 @@
 #include "evaluation/outside/outside_detector.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/detector_card_fields.hpp"
 #include "evaluation/outside/solver_program.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cctype>
 #include <iterator>
 #include <sstream>

@@ -1,13 +1,10 @@
 #include "evaluation/outside/outside_program.hpp"
 
 #include "evaluation/formats/scene_file.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "model/deadline.hpp"
 
-#include <algorithm>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 

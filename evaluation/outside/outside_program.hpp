@@ -1,15 +1,7 @@
 #pragma once
 
-#include "conelane/scene.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/outside/child_process.hpp"
-
-#include <cstdint>
-#include <memory>
-#include <mutex>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace conelane {
 

@@ -2,13 +2,8 @@
 
 #include "evaluation/seeded_random.hpp"
 #include "model/connecting_flow.hpp"
-#include "model/deadline.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,18 +1,9 @@
 #pragma once
 
-#include "conelane/formulation.hpp"
 #include "conelane/rld_solver.hpp"
 #include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/solver_program.hpp"
-#include "model/binary_program.hpp"
 #include "model/lane_graph_model.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 namespace conelane {
 

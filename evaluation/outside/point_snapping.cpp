@@ -2,14 +2,9 @@
 
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/outside_program.hpp"
-#include "evaluation/world/ground_truth.hpp"
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <optional>
-#include <unordered_map>
 #include <unordered_set>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,14 +1,8 @@
 #pragma once
 
-#include "conelane/scene.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-
-#include <cstddef>
-#include <span>
-#include <string>
-#include <vector>
 
 namespace conelane {
 

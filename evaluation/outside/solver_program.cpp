@@ -1,20 +1,14 @@
 #include "evaluation/outside/solver_program.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/program_files.hpp"
 #include "evaluation/input_error.hpp"
-#include "model/deadline.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cerrno>
 #include <cmath>
-#include <fstream>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,18 +1,9 @@
 #pragma once
 
-#include "evaluation/formats/interruption.hpp"
 #include "evaluation/formats/program_solution.hpp"
 #include "evaluation/outside/child_process.hpp"
-#include "model/binary_program.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
 
 namespace conelane {
 

@@ -1,7 +1,6 @@
 #include "evaluation/progress/progress.hpp"
 
 #include <cstdio>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>

@@ -1,24 +1,13 @@
 #include "evaluation/proofs/answer_check.hpp"
 
-#include "conelane/bound_certificate.hpp"
 #include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
 #include "evaluation/proofs/lane_graph_search.hpp"
-#include "evaluation/world/ground_truth.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 #include "model/deadline.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -1,14 +1,7 @@
 #pragma once
 
-#include "conelane/lane.hpp"
 #include "conelane/lane_graph.hpp"
-#include "conelane/rld_parameters.hpp"
-#include "conelane/scene.hpp"
 #include "evaluation/formats/lane_file.hpp"
-
-#include <optional>
-#include <string>
-#include <string_view>
 
 namespace conelane {
 

@@ -1,16 +1,9 @@
 #include "evaluation/proofs/certificate_verifier.hpp"
 
 #include "conelane/check.hpp"
-#include "evaluation/proofs/exact_costs.hpp"
 #include "evaluation/proofs/pair_enumeration.hpp"
-#include "evaluation/proofs/walk_bounds.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,11 +1,7 @@
 #pragma once
 
 #include "conelane/rld_parameters.hpp"
-#include "conelane/scene.hpp"
 #include "model/search_certificate.hpp"
-
-#include <cstdint>
-#include <string>
 
 namespace conelane {
 

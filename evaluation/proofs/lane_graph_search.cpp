@@ -3,13 +3,7 @@
 #include "conelane/check.hpp"
 #include "model/deadline.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <utility>
-#include <vector>
 
 #include <boost/dynamic_bitset.hpp>
 

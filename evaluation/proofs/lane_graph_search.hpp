@@ -2,9 +2,6 @@
 
 #include "conelane/lane_graph.hpp"
 #include "conelane/rld_parameters.hpp"
-#include "conelane/scene.hpp"
-
-#include <optional>
 
 namespace conelane {
 

@@ -1,10 +1,7 @@
 #include "evaluation/scoring/divergence.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 

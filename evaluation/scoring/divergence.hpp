@@ -1,13 +1,7 @@
 #pragma once
 
-#include "conelane/scene.hpp"
 #include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/world/track.hpp"
-
-#include <cstddef>
-#include <optional>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

@@ -1,14 +1,6 @@
 #include "evaluation/scoring/lane_failure.hpp"
 
 #include "evaluation/scoring/divergence.hpp"
-#include "evaluation/scoring/statistics.hpp"
-#include "model/geometry.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <span>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -1,13 +1,6 @@
 #pragma once
 
-#include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/world/annotated_scene.hpp"
-#include "evaluation/world/track.hpp"
-
-#include <cstddef>
-#include <optional>
-#include <string_view>
 
 namespace conelane {
 

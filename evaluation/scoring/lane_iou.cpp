@@ -2,10 +2,7 @@
 
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <span>
 
 #include <boost/polygon/polygon.hpp>
 

@@ -2,8 +2,6 @@
 
 #include "conelane/scene.hpp"
 
-#include <vector>
-
 namespace conelane {
 
 /// Both boundaries of a lane as positions [m] in driving order; `closed` as in Lane.

@@ -3,15 +3,8 @@
 #include "evaluation/scoring/published_figures.hpp"
 #include "evaluation/scoring/text_table.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <iterator>
-#include <map>
-#include <string_view>
 #include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

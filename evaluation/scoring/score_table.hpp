@@ -2,11 +2,6 @@
 
 #include "evaluation/scoring/score.hpp"
 
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
 #include <nlohmann/json_fwd.hpp>
 
 namespace conelane {

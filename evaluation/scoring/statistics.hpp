@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+// Measures of solvers on the same runs, as benchmarks of optimisation print them. Definitions with their
+// sources: docs/measures.md.
 namespace conelane {
 
 /// Real-time budget of a detection: the period of a 20 Hz LiDAR [ms].
@@ -89,5 +92,107 @@ struct SignedRankTest {
 
 /// Holm's step-down correction for this many tests, in the order of `p_values`.
 [[nodiscard]] std::vector<double> holm_corrected(std::span<const double> p_values);
+
+/// Whether a detector's statements about its own lanes are true. Shares are in [0, 1], and absent if no lane
+/// counts.
+class Calibration {
+  public:
+    static constexpr std::size_t kBins = 10;
+    static constexpr double kSure = 0.99;
+
+    struct Bin {
+        std::size_t lanes = 0;
+        double confidence = 0.0;  ///< sum
+        std::size_t usable = 0;
+    };
+
+    /// Counts a lane with this probability of being usable. Precondition: it is in [0, 1].
+    void add(double confidence, bool is_usable);
+    /// Counts a lane of that length, which is said to be right up to `trusted_m`, and which leaves the true
+    /// boundaries at `divergence_m`, if at all.
+    void add_trust(double trusted_m, double lane_length_m, std::optional<double> divergence_m);
+
+    /// By confidence, from [0, 0.1) to [0.9, 1].
+    [[nodiscard]] const std::array<Bin, kBins>& bins() const { return bins_; }
+    /// Expected calibration error: mean over the lanes of |confidence - share usable| of their bin.
+    [[nodiscard]] std::optional<double> error() const;
+    /// Share of usable lanes among those with a confidence of at least kSure.
+    [[nodiscard]] std::optional<double> usable_where_sure() const;
+    /// Share of lanes with a confidence of at least kSure.
+    [[nodiscard]] std::optional<double> sure() const;
+    /// Share of the lanes that are right up to their trusted length.
+    [[nodiscard]] std::optional<double> right_where_trusted() const;
+    /// Sum of the trusted lengths over the sum of the lengths.
+    [[nodiscard]] std::optional<double> trusted_share() const;
+
+  private:
+    std::array<Bin, kBins> bins_{};
+    std::size_t lanes_ = 0;
+    std::size_t sure_ = 0;
+    std::size_t usable_where_sure_ = 0;
+    std::size_t with_trust_ = 0;
+    std::size_t right_where_trusted_ = 0;
+    double trusted_m_ = 0.0;
+    double length_m_ = 0.0;
+};
+
+/// One run of a solver: an instance, in one order of its rows and columns.
+struct SolverRun {
+    double time_ms = 0.0;  ///< wall clock
+    bool solved = false;   ///< an optimum, or that there is none, was proven within the limit, and checked
+};
+
+/// The times, with `factor` times the limit for unsolved runs. Precondition: limit_ms > 0, factor >= 1.
+[[nodiscard]] std::vector<double> penalised_times_ms(std::span<const SolverRun> runs, double limit_ms,
+                                                     double factor = 1.0);
+
+/// PAR k: the mean of the penalised times. Throws InvalidInput if there is no run.
+[[nodiscard]] double penalised_average_ms(std::span<const SolverRun> runs, double limit_ms, double factor);
+
+/// Dolan and Moré's performance profile of each solver: at each of the ratios, ascending and >= 1, the share
+/// of the runs that it solves within this multiple of the fastest time. `by_solver` are runs of the same
+/// instances in one order. A run that no solver solves counts for none. Throws InvalidInput if the numbers of
+/// runs differ or there are none.
+[[nodiscard]] std::vector<std::vector<double>> performance_profiles(
+    std::span<const std::vector<SolverRun>> by_solver, std::span<const double> ratios);
+
+/// The best single solver compared with the best solver of each run.
+struct BestSolvers {
+    std::size_t single_best = 0;  ///< the solver of the least PAR 10, the first of several
+    double single_par10_ms = 0.0;
+    double virtual_par10_ms =
+        0.0;  ///< of the fastest that solves each run; a run that none solves is penalised
+    std::vector<std::size_t> won;  ///< by solver: runs that it solves first, a tie goes to the first
+};
+/// Throws InvalidInput if the numbers of runs differ, or there is no solver or no run.
+[[nodiscard]] BestSolvers best_solvers(std::span<const std::vector<SolverRun>> by_solver, double limit_ms);
+
+/// Objective and bound known at some time of a run.
+struct Knowledge {
+    double time_ms = 0.0;
+    std::optional<double> objective;  ///< of the incumbent
+    std::optional<double> bound;      ///< proven lower bound
+};
+
+/// |a - b| / max(|a|, |b|), in [0, 1]; 0 if both are 0, 1 if one is absent or they differ in sign.
+[[nodiscard]] double relative_distance(std::optional<double> a, std::optional<double> b);
+
+/// Integral over [0, limit] of the gap between `known_best` and the incumbent, or the bound, as a step
+/// function of time: 1 until the first of them. In milliseconds, between 0 and the limit. `steps` ascend in
+/// time; those after the limit are ignored.
+struct GapIntegrals {
+    double primal_ms = 0.0;
+    double dual_ms = 0.0;
+};
+[[nodiscard]] GapIntegrals gap_integrals(std::span<const Knowledge> steps, double known_best,
+                                         double limit_ms);
+
+/// Variation of the times of one instance over its permutations.
+struct Variability {
+    double coefficient = 0.0;  ///< standard deviation (divisor k - 1) / mean
+    double ratio = 1.0;        ///< largest / smallest
+};
+/// Throws InvalidInput for fewer than two times. Precondition: every time is positive.
+[[nodiscard]] Variability variability_of(std::span<const double> times_ms);
 
 }  // namespace conelane

@@ -2,12 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <limits>
-#include <optional>
-#include <string>
 
 namespace conelane {
 namespace {

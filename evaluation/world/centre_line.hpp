@@ -1,12 +1,6 @@
 #pragma once
 
-#include "conelane/scene.hpp"
 #include "evaluation/world/track.hpp"
-#include "model/geometry.hpp"
-
-#include <cstddef>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

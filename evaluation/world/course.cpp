@@ -2,11 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/world/centre_line.hpp"
-#include "model/geometry.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>

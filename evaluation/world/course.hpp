@@ -1,19 +1,8 @@
 #pragma once
 
-#include "conelane/lane.hpp"
-#include "conelane/point.hpp"
-#include "conelane/scene.hpp"
-#include "evaluation/world/scene_options.hpp"
-#include "evaluation/world/track.hpp"
-#include "model/geometry.hpp"
+#include "evaluation/world/scene_generation.hpp"
 
-#include <cmath>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string_view>
 #include <unordered_set>
-#include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
 

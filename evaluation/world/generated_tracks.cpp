@@ -3,17 +3,11 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/seeded_random.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 #include <numbers>
-#include <optional>
-#include <span>
 #include <sstream>
-#include <string_view>
 
-#include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 

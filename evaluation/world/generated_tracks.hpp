@@ -1,14 +1,6 @@
 #pragma once
 
 #include "evaluation/world/track.hpp"
-#include "model/geometry.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane {
 

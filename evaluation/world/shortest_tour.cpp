@@ -1,6 +1,5 @@
 #include "evaluation/world/shortest_tour.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace conelane {

@@ -8,8 +8,6 @@
 #include <exception>
 #include <iostream>
 #include <iterator>
-#include <string>
-#include <utility>
 
 #include <benchmark/benchmark.h>
 

@@ -2,10 +2,8 @@
 
 #include "evaluation/world/annotated_scene.hpp"
 
-#include <cstddef>
 #include <functional>
 #include <memory>
-#include <vector>
 
 namespace conelane::experiments {
 

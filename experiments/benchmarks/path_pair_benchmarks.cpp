@@ -15,17 +15,9 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "model/answer_verification.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-
-#include <array>
-#include <cstdint>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <benchmark/benchmark.h>
 

@@ -3,18 +3,11 @@
 // 30 % false positives, 20 m range.
 
 #include "conelane/detectors.hpp"
-#include "conelane/planner.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
-#include "evaluation/world/scene_generation.hpp"
-#include "experiments/race/course.hpp"
 #include "experiments/race/race.hpp"
 
-#include <cstddef>
 #include <ctime>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include <benchmark/benchmark.h>
 

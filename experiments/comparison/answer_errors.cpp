@@ -1,7 +1,5 @@
 #include "experiments/comparison/answer_errors.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace conelane::experiments {

@@ -2,11 +2,6 @@
 
 #include "evaluation/formats/lane_file.hpp"
 
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
-
 namespace conelane::experiments {
 
 /// Answers of status error, by the detector or solver that gave them.

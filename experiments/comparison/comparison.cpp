@@ -1,25 +1,11 @@
 #include "experiments/comparison/comparison.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/scene_set.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/progress/progress.hpp"
-#include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
-#include "experiments/comparison/summary.hpp"
 
-#include <algorithm>
-#include <array>
 #include <iterator>
-#include <map>
-#include <optional>
-#include <set>
-#include <span>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

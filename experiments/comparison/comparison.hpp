@@ -1,12 +1,7 @@
 #pragma once
 
-#include "evaluation/formats/scene_set.hpp"
 #include "experiments/comparison/answer_errors.hpp"
 #include "experiments/comparison/run_record.hpp"
-
-#include <filesystem>
-#include <string>
-#include <vector>
 
 namespace conelane::experiments {
 

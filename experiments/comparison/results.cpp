@@ -1,19 +1,10 @@
 #include "experiments/comparison/results.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "evaluation/formats/provenance.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/detector_card_fields.hpp"
 #include "evaluation/progress/progress.hpp"
-#include "evaluation/scoring/statistics.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <iterator>
-#include <map>
-#include <string>
-#include <type_traits>
-#include <utility>
 
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>

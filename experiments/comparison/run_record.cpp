@@ -1,19 +1,8 @@
 #include "experiments/comparison/run_record.hpp"
 
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/parameter_tag.hpp"
 #include "evaluation/formats/scene_options_fields.hpp"
-#include "evaluation/formats/scene_set.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/detector_card_fields.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <string_view>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,18 +1,7 @@
 #pragma once
 
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "evaluation/formats/scene_set.hpp"
-#include "evaluation/outside/outside_detector.hpp"
-#include "evaluation/world/scene_generation.hpp"
 #include "experiments/comparison/runner.hpp"
-
-#include <filesystem>
-#include <functional>
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
 
 namespace conelane::experiments {
 

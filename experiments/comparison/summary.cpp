@@ -1,17 +1,6 @@
-#include "experiments/comparison/summary.hpp"
+#include "experiments/comparison/results.hpp"
 
-#include "evaluation/scoring/lane_failure.hpp"
-#include "evaluation/scoring/statistics.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <map>
 #include <numeric>
-#include <optional>
-#include <set>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,22 +1,13 @@
 #include "experiments/cross_check/cross_check.hpp"
 
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_file.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "model/deadline.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
-#include <fstream>
 #include <iterator>
-#include <optional>
-#include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <oneapi/tbb/info.h>

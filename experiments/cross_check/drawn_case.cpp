@@ -1,18 +1,10 @@
-#include "experiments/cross_check/drawn_case.hpp"
-
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/learned_costs.hpp"
+#include "evaluation/formats/program_files.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/seeded_random.hpp"
+#include "experiments/cross_check/cross_check.hpp"
+#include "model/lane_graph_model.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <memory>
-#include <string_view>
-#include <utility>
-#include <vector>
-
-#include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 
@@ -266,6 +258,85 @@ void draw_colors_and_confidences(Scene& scene, Draw& draw) {
     }
 }
 
+class Shrinking {
+  public:
+    Shrinking(CrossCheckCase drawn, const std::function<bool(const CrossCheckCase&)>& differs,
+              std::size_t max_trials)
+        : smallest_(std::move(drawn)), differs_(differs), trials_left_(max_trials) {}
+
+    CrossCheckCase run() {
+        for (std::size_t together = smallest_.scene.cones.size() / 2; together > 1; together /= 2)
+            (void)remove_cones(together);
+        while (remove_cones(1)) {
+        }
+        reset_parameters();
+        while (remove_cones(1)) {  // simpler parameters may need fewer cones
+        }
+        return std::move(smallest_);
+    }
+
+  private:
+    bool keeps_differing(CrossCheckCase smaller) {
+        if (trials_left_ == 0) return false;
+        --trials_left_;
+        if (!differs_(smaller)) return false;
+        smallest_ = std::move(smaller);
+        return true;
+    }
+
+    /// Tries to remove each run of so many cones. Returns whether one was removed.
+    bool remove_cones(std::size_t together) {
+        bool any = false;
+        for (std::size_t first = 0; first < smallest_.scene.cones.size();) {
+            CrossCheckCase smaller = smallest_;
+            std::vector<Cone>& cones = smaller.scene.cones;
+            const std::size_t count = std::min(together, cones.size() - first);
+            const auto begin = cones.begin() + static_cast<std::ptrdiff_t>(first);
+            cones.erase(begin, begin + static_cast<std::ptrdiff_t>(count));
+            if (!cones.empty() && keeps_differing(std::move(smaller))) {
+                any = true;
+            } else {
+                first += count;
+            }
+        }
+        return any;
+    }
+
+    void reset_parameters() {
+        const auto reset = [&](auto member) {
+            if (smallest_.parameters.*member == RldParameters{}.*member) return;
+            CrossCheckCase simpler = smallest_;
+            simpler.parameters.*member = RldParameters{}.*member;
+            (void)keeps_differing(std::move(simpler));
+        };
+        for (const auto& fields : {rld_extra_fields(), rld_parameter_fields()}) {
+            for (const RldParameterField& field : fields) reset(field.value);
+        }
+        reset(&RldParameters::use_confidence);
+        reset(&RldParameters::forbid_crossing);
+        reset(&RldParameters::pairing);
+        reset(&RldParameters::learned_costs);
+    }
+
+    CrossCheckCase smallest_;
+    const std::function<bool(const CrossCheckCase&)>& differs_;
+    std::size_t trials_left_;
+};
+
+namespace fs = std::filesystem;
+
+constexpr std::array kFormulations{Formulation::paper, Formulation::tight};
+
+void write_program(const fs::path& file, const CrossCheckCase& drawn) {
+    const LaneGraphProblem problem =
+        make_problem(drawn.scene, drawn.parameters, parts(drawn.formulation).extent);
+    if (problem.edges.empty()) return;
+    const LaneGraphModel model(problem, drawn.formulation);
+    AtomicFile output(file);
+    write_mps(output.stream(), model.program(), drawn.scene.id);
+    output.commit();
+}
+
 }  // namespace
 
 std::vector<std::string_view> cross_check_kinds() {
@@ -304,6 +375,55 @@ CrossCheckCase draw_cross_check_case(std::span<const AnnotatedScene> given, std:
     // The program of the paper formulation grows with the fourth power of the cones.
     if (drawn.scene.cones.size() <= 8 && draw.chance(0.3)) drawn.formulation = Formulation::paper;
     return drawn;
+}
+
+CrossCheckCase shrink(CrossCheckCase drawn, const std::function<bool(const CrossCheckCase&)>& differs,
+                      std::size_t max_trials) {
+    return Shrinking(std::move(drawn), differs, max_trials).run();
+}
+
+fs::path write_case(const fs::path& directory, const StoredCase& stored,
+                    std::span<const std::string> findings) {
+    const CrossCheckCase& drawn = stored.drawn;
+    const std::string& name = drawn.scene.id;
+    AnnotatedScene scene;
+    scene.scene = drawn.scene;
+    write_scenes(directory / (name + ".scenes.jsonl"), std::array{scene});
+    write_rld_parameters(directory / (name + ".params.json"), drawn.parameters);
+    write_program(directory / (name + ".mps"), drawn);
+    nlohmann::ordered_json json{{"case", drawn.number},
+                                {"kind", drawn.kind},
+                                {"scenes", name + ".scenes.jsonl"},
+                                {"params", name + ".params.json"},
+                                {"formulation", to_string(drawn.formulation)},
+                                {"solvers", stored.solvers},
+                                {"time_limit_ms", stored.time_limit_ms},
+                                {"tight_limit_ms", drawn.tight_limit_ms},
+                                {"findings", findings}};
+    fs::path file = directory / (name + ".case.json");
+    AtomicFile output(file);
+    output.stream() << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    output.commit();
+    return file;
+}
+
+StoredCase read_case(const fs::path& file) {
+    StoredCase stored;
+    with_json_file(file, [&](const JsonNode& json) {
+        CrossCheckCase& drawn = stored.drawn;
+        drawn.number = static_cast<std::size_t>(json.member("case").unsigned_integer());
+        drawn.kind = json.member("kind").string();
+        drawn.formulation = json.member("formulation").one_of(kFormulations);
+        stored.time_limit_ms = json.member("time_limit_ms").non_negative_number();
+        drawn.tight_limit_ms = json.member("tight_limit_ms").non_negative_number();
+        const JsonNode solvers = json.member("solvers");
+        for (std::size_t i = 0; i < solvers.array_size(); ++i)
+            stored.solvers.push_back(solvers.element(i).string());
+        if (stored.solvers.empty()) solvers.fail("must name one");
+        drawn.scene = read_scenes(file.parent_path() / json.member("scenes").string()).front().scene;
+        drawn.parameters = read_rld_parameters(file.parent_path() / json.member("params").string());
+    });
+    return stored;
 }
 
 }  // namespace conelane::experiments

@@ -1,20 +1,11 @@
-#include "experiments/cross_check/judge.hpp"
-
 #include "conelane/check.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
 #include "evaluation/proofs/lane_graph_search.hpp"
+#include "experiments/cross_check/cross_check.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <utility>
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_int_distribution.hpp>

@@ -1,22 +1,11 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/input_error.hpp"
 
-#include <algorithm>
 #include <iterator>
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-#include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {

@@ -2,10 +2,6 @@
 
 #include "experiments/comparison/comparison.hpp"
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 namespace conelane::experiments {
 
 /// Courses of one place or one designer, so similar that a method that has seen one of them knows the others.

@@ -1,7 +1,6 @@
 // An example of a detector from outside in C++: conelane's own `clc` behind the line protocol. For `conelane
 // compare --methods "exec:clc-stream=./clc_stream"`.
 #include <iostream>
-#include <string>
 
 #include <conelane/detectors.hpp>
 #include <nlohmann/json.hpp>

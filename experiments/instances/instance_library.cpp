@@ -1,33 +1,16 @@
 #include "experiments/instances/instance_library.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/program_files.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/scene_set.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/outside_solver.hpp"
 #include "evaluation/world/generated_tracks.hpp"
-#include "experiments/instances/instance_features.hpp"
-#include "experiments/options/shared_options.hpp"
+#include "experiments/options/command_line.hpp"
 #include "model/connecting_flow.hpp"
-#include "model/lane_graph_model.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <fstream>
-#include <memory>
 #include <set>
-#include <sstream>
-#include <stdexcept>
-#include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -240,13 +223,44 @@ std::string number(const std::optional<double>& value) {
                                                                           : std::string();
 }
 
-/// What of the features a program shares with the other formulation of its scene and objective.
+/// A feature of a cone set with parameters before it is solved: both formulations share it.
+struct NamedFeature {
+    std::string_view name;
+    double value;
+};
+
 std::vector<NamedFeature> features_of_problem(const Scene& scene, const RldParameters& parameters) {
-    InstanceFeatures features;
-    features.problem = problem_features(make_problem(scene, parameters));
-    std::vector<NamedFeature> all = named(features);
-    all.resize(kProblemFeatures);
-    return all;
+    const LaneGraphProblem problem = make_problem(scene, parameters);
+    const auto share_of = [](double part, double whole) { return whole > 0.0 ? part / whole : 0.0; };
+    const auto pairs_of = [](double count) { return count * (count - 1.0) / 2.0; };
+    const auto cones = static_cast<double>(problem.cone_count);
+    const auto conflicts = static_cast<double>(problem.conflicts.size());  // pairs of edges too close (7)
+    std::vector<double> degree(problem.cone_count, 0.0);
+    double edges = 0.0;  // candidates that (27) allows, and their costs
+    double sum = 0.0;
+    double min_cost = std::numeric_limits<double>::infinity();
+    for (const ProblemEdge& edge : problem.edges) {
+        if (edge.high_cost) continue;
+        edges += 1.0;
+        degree[edge.i] += 1.0;
+        degree[edge.j] += 1.0;
+        sum += edge.cost;
+        min_cost = std::min(min_cost, edge.cost);
+    }
+    return {{"cones", cones},
+            {"near_cones", static_cast<double>(std::ranges::count(problem.near, true))},
+            {"edges", edges},
+            {"edge_density", share_of(edges, pairs_of(cones))},
+            {"turns", static_cast<double>(problem.turns.size())},
+            {"allowed_turns",  // by (28)
+             static_cast<double>(std::ranges::count(problem.turns, false, &ProblemTurn::high_cost))},
+            {"conflicts", conflicts},
+            {"conflict_density", share_of(conflicts, pairs_of(edges))},
+            {"far_apart", static_cast<double>(problem.far_apart.size())},  // far cones that are no ends (17)
+            {"mean_degree", share_of(2.0 * edges, cones)},
+            {"max_degree", degree.empty() ? 0.0 : std::ranges::max(degree)},
+            {"min_cost", edges > 0.0 ? min_cost : 0.0},
+            {"mean_cost", share_of(sum, edges)}};
 }
 
 std::string index_head(std::span<const NamedFeature> features) {

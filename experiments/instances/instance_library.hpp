@@ -1,19 +1,12 @@
 #pragma once
 
 #include "conelane/formulation.hpp"
-#include "conelane/rld_parameters.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "model/binary_program.hpp"
 
 #include <array>
-#include <cstddef>
-#include <filesystem>
 #include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane::experiments {
 

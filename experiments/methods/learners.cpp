@@ -1,28 +1,14 @@
-#include "experiments/methods/learners.hpp"
-
 #include "conelane/invalid_input.hpp"
-#include "detectors/recipe.hpp"
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/parameter_file.hpp"
-#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/weights_file.hpp"
-#include "evaluation/input_error.hpp"
+#include "experiments/methods/method.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
+#include "learning/training/clc_training.hpp"
 #include "learning/training/front_training.hpp"
 #include "learning/training/rld_training.hpp"
-#include "learning/training/training_run.hpp"
 #include "learning/tuning/detector_tuning.hpp"
-#include "learning/tuning/evaluation.hpp"
-#include "learning/tuning/parameter_ranges.hpp"
-#include "learning/tuning/tuner.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <memory>
+#include "learning/tuning/rld_tuning.hpp"
 
 namespace conelane::experiments {
 namespace {

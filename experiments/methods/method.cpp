@@ -5,12 +5,8 @@
 #include "evaluation/outside/outside_program.hpp"
 #include "evaluation/outside/outside_solver.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "model/deadline.hpp"
 #include "model/doubled_cones.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

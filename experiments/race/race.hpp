@@ -2,7 +2,7 @@
 
 #include "conelane/planner.hpp"
 #include "conelane/speed_profile.hpp"
-#include "evaluation/world/scene_options.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/course.hpp"
 #include "experiments/race/world.hpp"
 

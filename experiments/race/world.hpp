@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/planner.hpp"
-#include "evaluation/world/scene_options.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/course.hpp"
 
 #include <cstddef>

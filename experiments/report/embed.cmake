@@ -14,7 +14,7 @@ string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")
 string(REGEX REPLACE "(................................................................................)" "\\1\n"
                      bytes "${bytes}")
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-#include "experiments/report/package.hpp"
+#include "experiments/report/report.hpp"
 
 namespace conelane::experiments {
 namespace {

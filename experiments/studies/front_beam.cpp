@@ -3,20 +3,9 @@
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/scoring/statistics.hpp"
 #include "experiments/studies/study.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_judge.hpp"
-#include "graph_search/front/front_search.hpp"
-#include "model/deadline.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <span>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,10 +1,7 @@
 #include "experiments/studies/lane_graph_beam.hpp"
 
-#include <algorithm>
 #include <array>
 #include <limits>
-#include <utility>
-#include <vector>
 
 #include <boost/dynamic_bitset.hpp>
 

@@ -1,10 +1,6 @@
 #pragma once
 
-#include "conelane/lane_graph.hpp"
 #include "conelane/lane_graph_problem.hpp"
-
-#include <cstddef>
-#include <optional>
 
 namespace conelane::experiments {
 

@@ -7,9 +7,6 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <ctime>
-#include <fstream>
-#include <string>
-#include <string_view>
 
 #ifdef __GLIBC__
 #include <malloc.h>

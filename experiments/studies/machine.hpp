@@ -1,12 +1,6 @@
 #pragma once
 
 #include "conelane/rld_solver.hpp"
-#include "conelane/scene.hpp"
-
-#include <cstddef>
-#include <memory>
-#include <optional>
-#include <span>
 
 /// What a study measures of the machine and of this process.
 namespace conelane::experiments {

@@ -1,25 +1,12 @@
 #include "conelane/check.hpp"
-#include "conelane/invalid_input.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/studies/lane_graph_beam.hpp"
-#include "experiments/studies/solve_study.hpp"
-#include "experiments/studies/study.hpp"
+#include "experiments/studies/solve_rows.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <array>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <set>
-#include <tuple>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

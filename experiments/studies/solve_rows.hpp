@@ -1,22 +1,8 @@
 #pragma once
 
-#include "conelane/rld_parameters.hpp"
-#include "conelane/solve_report.hpp"
-#include "evaluation/scoring/solver_measures.hpp"
-#include "evaluation/world/annotated_scene.hpp"
-#include "experiments/comparison/answer_errors.hpp"
+#include "experiments/options/command_line.hpp"
 #include "experiments/studies/backend.hpp"
-#include "experiments/studies/row_fields.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <map>
-#include <optional>
-#include <span>
-#include <string>
-#include <tuple>
-#include <vector>
+#include "experiments/studies/study.hpp"
 
 /// Backends on cone sets: a row for each solve. Studies of solvers are aggregations of these rows.
 namespace conelane::experiments {
@@ -146,5 +132,40 @@ void mark_refuted_claims(std::span<SolveRow> rows);
 
 /// The answers by backend and size, and the errors among them; a refuted claim is one.
 [[nodiscard]] AnswerErrors errors_among(std::span<const SolveRow> rows);
+
+/// A study that solves the scenes of a file: the options that such studies have in common. `solves` are the
+/// defaults; without sizes there, the study has no --sizes, with a time limit of 0 no --time-limit.
+class SolveStudy : public SceneStudy {
+  public:
+    SolveStudy(const StudyDescription& description, SolveOptions solves);
+    void add_options(CLI::App& command) override;
+    [[nodiscard]] StudyResult measure(const SceneSet& set) final;
+
+  protected:
+    /// With the options that were given.
+    [[nodiscard]] virtual StudyResult aggregate(const SceneSet& set, SolveOptions solves) = 0;
+
+    SolveOptions solves_;
+
+  private:
+    std::vector<std::string> sizes_;
+    ParameterSource parameters_;
+};
+
+/// Reads "--limit N" into `limit`.
+void add_limit_option(CLI::App& command, std::optional<std::size_t>& limit, const std::string& description);
+/// Reads time limits [ms] that ascend; `require_ascending` throws InvalidInput where they do not.
+CLI::Option* add_limits_option(CLI::App& command, const std::string& name, std::vector<double>& limits_ms,
+                               const std::string& description);
+void require_ascending(const std::string& name, const std::vector<double>& limits_ms);
+
+/// Scene and track, then the other fields of a row.
+template <typename Row>
+[[nodiscard]] RowFields<Row> with_scene(const RowFields<Row>& others) {
+    RowFields<Row> fields{{"scene", [](const Row& row) { return row.scene->scene.id; }},
+                          {"track", [](const Row& row) { return row.scene->track; }}};
+    fields.insert(fields.end(), others.begin(), others.end());
+    return fields;
+}
 
 }  // namespace conelane::experiments

@@ -2,12 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <utility>
-
 namespace conelane {
 namespace {
 

@@ -1,24 +1,11 @@
 #pragma once
 
 #include "conelane/lane.hpp"
-#include "conelane/scene.hpp"
-#include "conelane/stop_reason.hpp"
-#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/lane_beam.hpp"
-#include "graph_search/clc/lane_constraints.hpp"
-#include "graph_search/clc/path_pair_enumeration.hpp"
 #include "graph_search/clc/start_vertices.hpp"
-#include "graph_search/shared/search_budget.hpp"
-#include "graph_search/shared/search_graph.hpp"
-#include "model/deadline.hpp"
 
-#include <cstddef>
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace conelane {
 

@@ -1,14 +1,6 @@
 #include "graph_search/clc/clc_detector.hpp"
 
 #include "graph_search/weights/shipped_weights.hpp"
-#include "model/deadline.hpp"
-
-#include <algorithm>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

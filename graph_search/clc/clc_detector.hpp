@@ -4,8 +4,6 @@
 #include "graph_search/clc/candidate_search.hpp"
 #include "graph_search/clc/ranking.hpp"
 
-#include <memory>
-
 namespace conelane {
 
 struct ClcOptions : CandidateSearchOptions {

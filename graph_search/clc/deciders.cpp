@@ -1,7 +1,5 @@
 #include "graph_search/clc/deciders.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace conelane {

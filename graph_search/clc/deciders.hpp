@@ -1,15 +1,9 @@
 #pragma once
 
 #include "graph_search/shared/search_graph.hpp"
-#include "model/geometry.hpp"
 
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <numbers>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

@@ -2,12 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "graph_search/clc/start_vertices.hpp"
-#include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <tuple>
 #include <utility>
 

@@ -1,20 +1,9 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-#include "graph_search/clc/deciders.hpp"
-#include "graph_search/clc/lane_constraints.hpp"
-#include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
-#include "graph_search/shared/search_budget.hpp"
-#include "graph_search/shared/search_graph.hpp"
 
-#include <array>
 #include <bitset>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
-#include <vector>
 
 namespace conelane {
 

@@ -1,11 +1,6 @@
 #include "graph_search/clc/lane_constraints.hpp"
 
 #include "graph_search/shared/simd_batch.hpp"
-#include "model/geometry.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 
 namespace conelane {
 namespace {

@@ -1,12 +1,8 @@
 #pragma once
 
 #include "graph_search/clc/lane_width.hpp"
-#include "graph_search/shared/search_graph.hpp"
 
-#include <array>
 #include <numbers>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

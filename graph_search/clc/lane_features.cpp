@@ -2,10 +2,7 @@
 
 #include "graph_search/clc/deciders.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <initializer_list>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -3,13 +3,6 @@
 #include "graph_search/clc/lane_width.hpp"
 #include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/shared/moments.hpp"
-#include "graph_search/shared/search_graph.hpp"
-
-#include <array>
-#include <cstddef>
-#include <limits>
-#include <span>
-#include <string_view>
 
 namespace conelane {
 

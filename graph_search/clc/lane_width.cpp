@@ -2,9 +2,6 @@
 
 #include "graph_search/shared/simd_batch.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace conelane {
 namespace {
 

@@ -1,14 +1,8 @@
 #pragma once
 
 #include "graph_search/shared/search_graph.hpp"
-#include "model/geometry.hpp"
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

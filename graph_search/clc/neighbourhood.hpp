@@ -1,7 +1,6 @@
 #pragma once
 
 #include "graph_search/shared/search_graph.hpp"
-#include "model/geometry.hpp"
 
 namespace conelane {
 

@@ -1,7 +1,5 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 
-#include <algorithm>
-
 namespace conelane {
 namespace {
 

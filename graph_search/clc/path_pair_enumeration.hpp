@@ -3,15 +3,6 @@
 #include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/lane_features.hpp"
-#include "graph_search/shared/search_budget.hpp"
-#include "graph_search/shared/search_graph.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

@@ -3,11 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "graph_search/shared/simd_batch.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <vector>
 
 namespace conelane {
 namespace {

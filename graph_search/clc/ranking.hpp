@@ -3,7 +3,6 @@
 #include "graph_search/clc/lane_features.hpp"
 
 #include <memory>
-#include <span>
 
 #include <Eigen/Core>
 

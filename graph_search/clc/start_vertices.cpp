@@ -1,7 +1,5 @@
 #include "graph_search/clc/start_vertices.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <tuple>
 #include <utility>
 

@@ -1,13 +1,7 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-#include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/path_pair_enumeration.hpp"
-
-#include <array>
-#include <cstddef>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

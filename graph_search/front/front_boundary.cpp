@@ -1,8 +1,5 @@
 #include "graph_search/front/front_boundary.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <span>
 #include <tuple>
 
 namespace conelane {

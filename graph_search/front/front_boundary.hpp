@@ -1,11 +1,6 @@
 #pragma once
 
 #include "graph_search/front/front_map.hpp"
-#include "graph_search/shared/search_budget.hpp"
-
-#include <cstddef>
-#include <optional>
-#include <vector>
 
 namespace conelane {
 

@@ -4,10 +4,6 @@
 #include "graph_search/front/front_judge.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 
-#include <algorithm>
-#include <span>
-#include <utility>
-
 namespace conelane {
 namespace {
 

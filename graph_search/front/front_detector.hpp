@@ -3,9 +3,6 @@
 #include "conelane/lane_detector.hpp"
 #include "graph_search/front/front_search.hpp"
 
-#include <memory>
-#include <optional>
-
 namespace conelane {
 
 /// Cones that stand at most this far apart [m] are one cone for `front` in scenes that have many of them (see

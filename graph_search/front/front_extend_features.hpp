@@ -1,12 +1,6 @@
 #pragma once
 
 #include "graph_search/front/front_features.hpp"
-#include "graph_search/front/front_map.hpp"
-#include "graph_search/front/front_state.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace conelane {
 

@@ -2,11 +2,6 @@
 
 #include "graph_search/front/front_extend_features.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 namespace conelane {
 namespace {
 

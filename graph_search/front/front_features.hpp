@@ -2,11 +2,6 @@
 
 #include "graph_search/front/front_state.hpp"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <string_view>
 #include <utility>
 
 namespace conelane {

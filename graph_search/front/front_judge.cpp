@@ -1,11 +1,8 @@
 #include "graph_search/front/front_judge.hpp"
 
 #include "graph_search/front/front_extend_features.hpp"
-#include "graph_search/front/front_features.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 

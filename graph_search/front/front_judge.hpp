@@ -1,15 +1,6 @@
 #pragma once
 
-#include "graph_search/front/front_features.hpp"
 #include "graph_search/front/front_search.hpp"
-#include "graph_search/front/front_weights.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

@@ -1,6 +1,5 @@
 #include "graph_search/front/front_map.hpp"
 
-#include <cmath>
 #include <tuple>
 
 namespace conelane {

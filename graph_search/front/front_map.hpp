@@ -3,13 +3,8 @@
 #include "conelane/scene.hpp"
 #include "graph_search/shared/search_graph.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <numbers>
-#include <span>
-#include <vector>
 
 namespace conelane {
 

@@ -2,7 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 
-#include <cmath>
 #include <tuple>
 
 namespace conelane {

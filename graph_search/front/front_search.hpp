@@ -2,16 +2,8 @@
 
 #include "conelane/lane.hpp"
 #include "graph_search/front/front_cost.hpp"
-#include "graph_search/shared/search_budget.hpp"
 
-#include <algorithm>
-#include <array>
 #include <bitset>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 

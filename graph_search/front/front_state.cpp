@@ -1,6 +1,5 @@
 #include "graph_search/front/front_state.hpp"
 
-#include <algorithm>
 #include <tuple>
 
 namespace conelane {

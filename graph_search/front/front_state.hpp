@@ -2,13 +2,6 @@
 
 #include "graph_search/front/front_map.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
-
 namespace conelane {
 
 /// The end of a boundary that grows.

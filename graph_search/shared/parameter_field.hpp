@@ -3,7 +3,6 @@
 #include "conelane/invalid_input.hpp"
 
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace conelane {

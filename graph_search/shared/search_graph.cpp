@@ -1,9 +1,5 @@
 #include "graph_search/shared/search_graph.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 namespace conelane {
 namespace {
 

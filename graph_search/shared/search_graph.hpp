@@ -3,9 +3,6 @@
 #include "graph_search/shared/search_budget.hpp"
 #include "model/geometry.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <span>
 #include <vector>
 
 namespace conelane {

@@ -1,8 +1,6 @@
 #include "graph_search/weights/shipped_weights.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "graph_search/clc/lane_features.hpp"
-#include "graph_search/front/front_weights.hpp"
 #include "graph_search/shared/weights_reader.hpp"
 #include "graph_search/weights/weight_files.hpp"
 

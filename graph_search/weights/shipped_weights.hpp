@@ -4,10 +4,6 @@
 #include "graph_search/clc/ranking.hpp"
 #include "graph_search/front/front_cost.hpp"
 
-#include <memory>
-#include <string>
-#include <string_view>
-
 namespace conelane {
 
 /// The weights of a ranking network from their file: a JSON object with `version` 1, `features` (the names of

@@ -1,21 +1,145 @@
 #include "learning/training/front_learner.hpp"
 
+#include "evaluation/scoring/divergence.hpp"
+#include "evaluation/scoring/score.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "learning/training/front_gradient.hpp"
 #include "learning/training/training_loop.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <span>
 
 namespace conelane::learning {
 namespace {
+
+using Units = std::array<float, kFrontUnits>;
+
+CONELANE_SIMD void add_scaled(float factor, const float* from, float* to) {
+    for (std::size_t unit = 0; unit < kFrontUnits; ++unit) to[unit] += factor * from[unit];
+}
+
+/// Number of cones in one of the lanes but not in the other, as a share of the true ones.
+double cone_error(const FrontTruth::Cones& lane, const FrontTruth::Cones& truth) {
+    std::size_t shared = 0;
+    for (const Side side : {kLeft, kRight}) {
+        for (const Vertex cone : lane[side])
+            shared += static_cast<std::size_t>(std::ranges::count(truth[side], cone));
+    }
+    const std::size_t all = lane[kLeft].size() + lane[kRight].size();
+    const std::size_t right = truth[kLeft].size() + truth[kRight].size();
+    return std::min(1.0, static_cast<double>(all + right - 2 * shared) / static_cast<double>(right));
+}
 
 constexpr std::size_t kNone = FrontSearch::kNone;
 /// Smaller derivatives are left out.
 constexpr double kMinFactor = 1e-4;
 
+/// -log(probability) of the outcome.
+double cross_entropy(double probability, bool happened) {
+    constexpr double kMin = 1e-9;
+    return -std::log(std::max(kMin, happened ? probability : 1.0 - probability));
+}
+
 }  // namespace
+
+void add_derivatives(const FrontNetworkWeights& network, std::span<const float> inputs, float factor,
+                     FrontNetworkWeights& derivatives) {
+    Units sums{};
+    std::ranges::copy(network.hidden_bias, sums.begin());
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (inputs[i] != 0.0F) add_scaled(inputs[i], network.hidden.data() + i * kFrontUnits, sums.data());
+    }
+    Units by_sum{};
+    for (std::size_t unit = 0; unit < kFrontUnits; ++unit) {
+        if (sums[unit] <= 0.0F) continue;
+        derivatives.output[unit] += factor * sums[unit];
+        by_sum[unit] = factor * network.output[unit];
+    }
+    add_scaled(1.0F, by_sum.data(), derivatives.hidden_bias.data());
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (inputs[i] == 0.0F) continue;
+        add_scaled(inputs[i], by_sum.data(), derivatives.hidden.data() + i * kFrontUnits);
+        derivatives.linear[i] += factor * inputs[i];
+    }
+    derivatives.output_bias += factor;
+}
+
+void add(FrontWeights& a, const FrontWeights& b) {
+    std::vector<std::span<const float>> blocks;
+    for_each_block(b, [&](std::span<const float> block) { blocks.push_back(block); });
+    auto from = blocks.begin();
+    for_each_block(a, [&](std::span<float> block) {
+        for (std::size_t i = 0; i < block.size(); ++i) block[i] += (*from)[i];
+        ++from;
+    });
+}
+
+void set_zero(FrontWeights& weights) {
+    for_each_block(weights, [](std::span<float> block) { std::ranges::fill(block, 0.0F); });
+}
+
+void FrontTruth::set(const AnnotatedScene& scene, const FrontMap& map) {
+    scene_ = &scene;
+    map_ = &map;
+    // From cones of the scene to cones of the map.
+    std::vector<Vertex> vertex_of(map.size());
+    for (Vertex cone = 0; cone < vertex_of.size(); ++cone) vertex_of[map.scene_index(cone)] = cone;
+    const auto index_of = index_by_id(scene.scene);
+    for (const Side side : {kLeft, kRight}) {
+        cones_[side].clear();
+        for (const ConeId id : side == kLeft ? scene.ground_truth->left : scene.ground_truth->right) {
+            cones_[side].push_back(vertex_of[index_of.at(id)]);
+        }
+    }
+}
+
+LaneOutline FrontTruth::outline(const Cones& lane) const {
+    LaneOutline result;
+    for (const Vertex cone : lane[kLeft]) result.left.push_back(map_->position(cone));
+    for (const Vertex cone : lane[kRight]) result.right.push_back(map_->position(cone));
+    return result;
+}
+
+LaneOutline FrontTruth::outline_in_world(const Cones& lane) const {
+    LaneOutline result;
+    const auto place = [&](const std::vector<Vertex>& from, std::vector<Point>& to) {
+        for (const Vertex cone : from) to.push_back(scene_->scene.cones[map_->scene_index(cone)].position);
+    };
+    place(lane[kLeft], result.left);
+    place(lane[kRight], result.right);
+    return result;
+}
+
+double FrontTruth::risk(const Cones& lane, const TrackBoundaries& boundaries,
+                        const FrontRiskOptions& options) const {
+    if (lane[kLeft].size() < 2 || lane[kRight].size() < 2) return options.worst();
+    if (lane == cones_) return 0.0;
+    const double iou = intersection_over_union_of_simple(outline(lane), outline(cones_));
+    const double risk = 1.0 - iou + options.cones * cone_error(lane, cones_);
+    constexpr double kSurelyUsable = 0.985;
+    return iou > kSurelyUsable || is_usable(lane, boundaries) ? risk : risk + options.unusable;
+}
+
+bool FrontTruth::is_usable(const Cones& lane, const TrackBoundaries& boundaries) const {
+    if (lane[kLeft].size() < 2 || lane[kRight].size() < 2) return false;
+    const LaneOutline predicted = outline_in_world(lane);
+    const LaneOutline truth = outline_in_world(cones_);
+    return conelane::is_usable(lane_length_m(predicted), lane_length_m(truth),
+                               conelane::divergence_m(predicted, truth, boundaries));
+}
+
+std::array<std::size_t, 2> FrontTruth::right_cones(const Cones& lane,
+                                                   const TrackBoundaries& boundaries) const {
+    const LaneOutline predicted = outline_in_world(lane);
+    const LaneOutline truth = outline_in_world(cones_);
+    const auto right = [&](const std::vector<Point>& boundary, const std::vector<Point>& annotated,
+                           const Point& first) {
+        const auto divergence = boundary_divergence(boundary, annotated, boundaries.closed, first);
+        return divergence ? divergence->vertex_off : boundary.size();
+    };
+    return {right(predicted.left, boundaries.left, truth.left.front()),
+            right(predicted.right, boundaries.right, truth.right.front())};
+}
+
+std::optional<double> FrontTruth::divergence_m(const Cones& lane, const TrackBoundaries& boundaries) const {
+    return conelane::divergence_m(outline_in_world(lane), outline_in_world(cones_), boundaries);
+}
 
 ListLoss list_loss(std::vector<double> scores, std::span<const double> risks,
                    const FrontLossOptions& options) {
@@ -302,6 +426,134 @@ void FrontLearner::add_start(std::size_t start, double factor, const FrontWeight
         add_derivatives(weights.start, rows.subspan(row * kStartFeatures, kStartFeatures),
                         static_cast<float>(factor), derivatives.start);
     }
+}
+
+FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
+                                                 const TrackBoundaries& boundaries,
+                                                 const FrontWeights& weights, FrontCost& cost,
+                                                 FrontJudge& judge, const FrontLossOptions& options,
+                                                 FrontWeights* derivatives) {
+    Loss loss;
+    loss.risk = options.risk.worst();
+    search(scene.scene, cost, options);
+    if (contenders_.empty()) return loss;
+    truth_.set(scene, front_.map());
+    risks_.clear();
+    for (const FrontTruth::Cones& lane : lanes_)
+        risks_.push_back(truth_.risk(lane, boundaries, options.risk));
+    judge.compare(front_, contenders_);
+    add_rank(weights, judge, options, loss, derivatives);
+    const std::optional<std::size_t> chosen = answered(judge);
+    if (!chosen) return loss;
+    loss.found = true;
+    loss.risk = risks_[*chosen];
+    loss.is_usable = truth_.is_usable(lanes_[*chosen], boundaries);
+    loss.confidence = judge.confidence(*chosen);
+    loss.sum += cross_entropy(loss.confidence, loss.is_usable);
+    if (derivatives != nullptr) {
+        const double factor = loss.confidence - (loss.is_usable ? 1.0 : 0.0);
+        add_derivatives(weights.usable, judge.features(*chosen), static_cast<float>(factor),
+                        derivatives->usable);
+    }
+    add_right(boundaries, weights, judge, *chosen, loss, derivatives);
+    loss.trust_where_wrong = trust_where_wrong(boundaries, judge, *chosen);
+    return loss;
+}
+
+double FrontJudgeLearner::judge_noise(const Scene& scene, const FrontWeights& weights, FrontCost& cost,
+                                      FrontJudge& judge, const FrontLossOptions& options,
+                                      FrontWeights& derivatives) {
+    search(scene, cost, options);
+    if (contenders_.empty()) return 0.0;
+    judge.compare(front_, contenders_);
+    const std::optional<std::size_t> chosen = answered(judge);
+    if (!chosen) return 0.0;
+    const double confidence = judge.confidence(*chosen);
+    add_derivatives(weights.usable, judge.features(*chosen), static_cast<float>(confidence),
+                    derivatives.usable);
+    const FrontJudge::Step& first = judge.steps()[judge.path(*chosen).front()];
+    add_derivatives(weights.right, first.inputs, static_cast<float>(first.right), derivatives.right);
+    return cross_entropy(confidence, false) + cross_entropy(first.right, false);
+}
+
+/// Sets the contenders and their lanes, the one with the highest score first.
+void FrontJudgeLearner::search(const Scene& scene, FrontCost& cost, const FrontLossOptions& options) {
+    front_.begin(scene, cost, options.search);
+    SearchBudget unlimited;
+    front_.run(unlimited);
+    front_.sort_finished(FrontJudge::kContenders);
+    contenders_.clear();
+    lanes_.clear();
+    for (const FrontSearch::Finished& lane : front_.finished()) {
+        if (contenders_.size() == FrontJudge::kContenders) break;
+        FrontTruth::Cones cones;
+        front_.cones(lane.parent, cones);
+        even_far_ends(front_.map(), cones);
+        contenders_.push_back({lane.parent, lane.score});
+        lanes_.push_back(std::move(cones));
+    }
+}
+
+/// The contender that the detector answers; nothing if none is a lane.
+std::optional<std::size_t> FrontJudgeLearner::answered(const FrontJudge& judge) const {
+    const auto is_lane = [&](std::size_t place) {
+        return lanes_[place][kLeft].size() > 1 && lanes_[place][kRight].size() > 1;
+    };
+    const auto chosen = std::ranges::find_if(judge.order(), is_lane);
+    return chosen == judge.order().end() ? std::nullopt : std::optional(*chosen);
+}
+
+void FrontJudgeLearner::add_rank(const FrontWeights& weights, const FrontJudge& judge,
+                                 const FrontLossOptions& options, Loss& loss,
+                                 FrontWeights* derivatives) const {
+    std::vector<double> scores;
+    for (std::size_t i = 0; i < contenders_.size(); ++i)
+        scores.push_back(contenders_[i].score + judge.rank(i));
+    const ListLoss list = list_loss(std::move(scores), risks_, options);
+    loss.sum += options.minimum_risk * list.expected_risk;
+    if (derivatives == nullptr) return;
+    for (std::size_t i = 0; i < contenders_.size(); ++i) {
+        add_derivatives(weights.rank, judge.features(i), static_cast<float>(list.by_score[i]),
+                        derivatives->rank);
+    }
+}
+
+void FrontJudgeLearner::add_right(const TrackBoundaries& boundaries, const FrontWeights& weights,
+                                  const FrontJudge& judge, std::size_t chosen, Loss& loss,
+                                  FrontWeights* derivatives) const {
+    const FrontTruth::Cones& lane = lanes_[chosen];
+    const std::array<std::size_t, 2> right_cones = truth_.right_cones(lane, boundaries);
+    std::array<std::size_t, 2> place{};
+    for (const std::uint32_t number : judge.path(chosen)) {
+        const FrontJudge::Step& step = judge.steps()[number];
+        const FrontSearch::Node& node = front_.node(step.node);
+        bool is_right = true;
+        if (node.parent == FrontSearch::kNone) {
+            is_right = right_cones[kLeft] > 0 && right_cones[kRight] > 0;
+            place = {1, 1};
+        } else {
+            const std::size_t cone = place[node.side]++;
+            if (cone >= lane[node.side].size()) continue;  // beyond the part of the lane that is answered
+            is_right = cone < right_cones[node.side];
+        }
+        loss.sum += cross_entropy(step.right, is_right);
+        if (derivatives != nullptr) {
+            add_derivatives(weights.right, step.inputs,
+                            static_cast<float>(step.right - (is_right ? 1.0 : 0.0)), derivatives->right);
+        }
+        if (!is_right) return;
+    }
+}
+
+double FrontJudgeLearner::trust_where_wrong(const TrackBoundaries& boundaries, FrontJudge& judge,
+                                            std::size_t chosen) const {
+    const FrontTruth::Cones& lane = lanes_[chosen];
+    const std::optional<double> divergence_m = truth_.divergence_m(lane, boundaries);
+    if (!divergence_m) return -1.0;
+    const auto reaches = judge.reaches(front_, chosen, {lane[kLeft].size(), lane[kRight].size()});
+    const auto too_far = [&](const FrontJudge::Reach& reach) { return reach.trusted_m > *divergence_m; };
+    const auto wrong = std::ranges::find_if(reaches, too_far);
+    return wrong == reaches.end() ? -1.0 : wrong->trust;
 }
 
 }  // namespace conelane::learning

@@ -5,19 +5,9 @@
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/course.hpp"
-#include "evaluation/world/scene_generation.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <iterator>
-#include <numbers>
-#include <optional>
-#include <unordered_map>
-#include <utility>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 

@@ -2,14 +2,7 @@
 
 #include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/track.hpp"
-#include "learning/training/option_field.hpp"
 #include "learning/training/training_loop.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 namespace conelane::learning {
 

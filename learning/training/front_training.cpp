@@ -1,27 +1,15 @@
 #include "learning/training/front_training.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/progress/parallel.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_features.hpp"
-#include "learning/training/front_gradient.hpp"
-#include "learning/training/training_loop.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <string_view>
-#include <utility>
 
 #include <boost/random/normal_distribution.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace conelane::learning {
 namespace {

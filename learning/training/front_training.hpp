@@ -1,15 +1,9 @@
 #pragma once
 
 #include "evaluation/formats/scene_set.hpp"
-#include "evaluation/scoring/calibration.hpp"
-#include "learning/training/front_judge_learner.hpp"
+#include "evaluation/scoring/statistics.hpp"
+#include "learning/training/front_learner.hpp"
 #include "learning/training/front_scenes.hpp"
-
-#include <cstddef>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace conelane::learning {
 

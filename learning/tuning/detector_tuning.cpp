@@ -1,17 +1,11 @@
 #include "learning/tuning/detector_tuning.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "evaluation/formats/json_node.hpp"
 #include "evaluation/progress/parallel.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "learning/tuning/parameter_ranges.hpp"
+#include "learning/tuning/rld_tuning.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
-#include <utility>
 
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>

@@ -3,15 +3,6 @@
 #include "detectors/recipe.hpp"
 #include "evaluation/formats/scene_set.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
-
 namespace conelane::learning {
 
 /// Figures of values on scenes. More often usable is better; if equal, higher IoU is better.

@@ -2,9 +2,6 @@
 
 #include "conelane/lane_graph_problem.hpp"
 
-#include <cstdint>
-#include <vector>
-
 namespace conelane::constraints {
 
 /// A graph with edges as vertices. Two are joined if no lane graph holds both. Adjacency: rows of bits.

@@ -2,8 +2,6 @@
 
 #include "model/formulation_parts.hpp"
 
-#include <vector>
-
 /// The constraint families of the RLD model; `formulation_parts.cpp` lists those of a
 /// formulation. Families with many or long rows check RowWriter::stop between them.
 namespace conelane::constraints {

@@ -1,9 +1,6 @@
 #include "model/constraints/conflict_graph.hpp"
 #include "model/constraints/families.hpp"
 
-#include <algorithm>
-#include <vector>
-
 namespace conelane::constraints {
 namespace {
 

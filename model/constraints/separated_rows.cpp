@@ -1,9 +1,5 @@
 #include "model/constraints/families.hpp"
 
-#include <algorithm>
-#include <array>
-#include <limits>
-
 namespace conelane::constraints {
 namespace {
 

@@ -3,7 +3,6 @@
 // input is thrown, see runtime.cpp.
 #include "conelane/check.hpp"
 #include "conelane/core_solvers.hpp"
-#include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
 #include "conelane/solve_scene.hpp"
@@ -12,18 +11,6 @@
 #include "evaluation/world/generated_tracks.hpp"
 #include "model/deadline.hpp"
 #include "playground/module/json_text.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #define CONELANE_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <new>
-#include <stdexcept>
 #include <typeinfo>
 
 namespace {

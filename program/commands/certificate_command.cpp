@@ -1,20 +1,9 @@
 #include "conelane/bound_certificate.hpp"
-#include "conelane/invalid_input.hpp"
-#include "conelane/lane_graph_problem.hpp"
-#include "evaluation/formats/certificate_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/input_error.hpp"
+#include "evaluation/formats/solution_file.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
-#include "evaluation/world/ground_truth.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <type_traits>
 
 namespace conelane::program {
 namespace {

@@ -1,22 +1,9 @@
 #include "conelane/check.hpp"
 #include "evaluation/formats/solution_file.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "evaluation/proofs/exact_program.hpp"
-#include "evaluation/world/ground_truth.hpp"
+#include "evaluation/proofs/exact_arithmetic.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <map>
-#include <set>
-#include <stdexcept>
-#include <utility>
-#include <variant>
 
 #include <fmt/ranges.h>
 

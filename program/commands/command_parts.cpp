@@ -1,26 +1,12 @@
 #include "program/commands/command_parts.hpp"
 
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/input_error.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
 #include "graph_search/front/front_weights.hpp"
 
-#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
-#include <string_view>
-#include <system_error>
-#include <type_traits>
-#include <utility>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 namespace conelane::program {
 namespace {

@@ -1,20 +1,8 @@
 #pragma once
 
-#include "conelane/detectors.hpp"
-#include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/comparison.hpp"
-#include "learning/training/option_field.hpp"
+#include "learning/training/training_loop.hpp"
 #include "program/commands/commands.hpp"
-
-#include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
-#include <unordered_map>
-#include <vector>
 
 /// What several commands do.
 namespace conelane::program {

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "experiments/options/shared_options.hpp"
+#include "experiments/options/command_line.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace conelane::learning {}

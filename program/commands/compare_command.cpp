@@ -1,11 +1,6 @@
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
-#include "experiments/comparison/comparison.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
-
-#include <algorithm>
-#include <filesystem>
 
 namespace conelane::program {
 namespace {

@@ -1,6 +1,5 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 
 namespace conelane::program {
 namespace {

@@ -1,12 +1,7 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "experiments/comparison/runner.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
-#include <cstddef>
 #include <iostream>
 
 namespace conelane::program {

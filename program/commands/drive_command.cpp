@@ -1,17 +1,9 @@
 #include "conelane/drivable_lane.hpp"
-#include "conelane/invalid_input.hpp"
-#include "conelane/planner.hpp"
-#include "evaluation/formats/drivable_lane_file.hpp"
 #include "evaluation/formats/frame_file.hpp"
-#include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/lane_file.hpp"
-#include "evaluation/input_error.hpp"
-#include "experiments/report/package.hpp"
+#include "experiments/report/report.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 
 #include <iostream>
-#include <utility>
 
 namespace conelane::program {
 namespace {

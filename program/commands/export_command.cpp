@@ -1,22 +1,11 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/program_files.hpp"
 #include "evaluation/formats/program_solution.hpp"
-#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/proofs/answer_check.hpp"
 #include "model/connecting_flow.hpp"
 #include "model/lane_graph_model.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
 
 // Export and import are about the program of one scene. Rows that a solve adds on demand, (5) and the
 // pairing, are too many to write in full; a flow replaces them. With --rows-on-demand the file has neither:

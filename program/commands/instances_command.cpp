@@ -3,7 +3,6 @@
 #include "experiments/instances/instance_library.hpp"
 #include "program/commands/commands.hpp"
 
-#include <filesystem>
 #include <set>
 
 namespace conelane::program {

@@ -7,7 +7,7 @@
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
-#include "experiments/methods/learners.hpp"
+#include "experiments/methods/method.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/command_parts.hpp"

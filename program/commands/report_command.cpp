@@ -1,17 +1,6 @@
 #include "conelane/drivable_lane.hpp"
-#include "conelane/invalid_input.hpp"
-#include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/input_error.hpp"
-#include "experiments/report/package.hpp"
-#include "experiments/report/picture.hpp"
 #include "experiments/report/report.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
-
-#include <algorithm>
-#include <filesystem>
 
 #include <fmt/ranges.h>
 

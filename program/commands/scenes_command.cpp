@@ -1,5 +1,3 @@
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "program/commands/commands.hpp"

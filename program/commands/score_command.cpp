@@ -1,23 +1,7 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/scene_set.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "experiments/comparison/results.hpp"
-#include "experiments/comparison/summary.hpp"
-#include "experiments/methods/method.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
-
-#include <algorithm>
-#include <filesystem>
-#include <span>
-#include <unordered_map>
-#include <utility>
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::program {
 namespace {

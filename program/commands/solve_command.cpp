@@ -1,20 +1,12 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/outside_solver.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <map>
-#include <utility>
 
 #include <fmt/ranges.h>
 

@@ -1,9 +1,5 @@
-#include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/json_node.hpp"
-#include "evaluation/formats/provenance.hpp"
 #include "experiments/studies/study.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 
 namespace conelane::program {
 namespace {

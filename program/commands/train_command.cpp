@@ -1,18 +1,12 @@
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/formats/weights_file.hpp"
-#include "evaluation/input_error.hpp"
 #include "graph_search/clc/clc_detector.hpp"
-#include "graph_search/weights/weight_files.hpp"
+#include "learning/training/clc_training.hpp"
 #include "learning/training/front_training.hpp"
 #include "learning/training/rld_training.hpp"
-#include "learning/training/training_run.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 
-#include <cstdint>
 #include <cstdio>
 
 namespace conelane::program {

@@ -1,21 +1,8 @@
 #include "conelane/invalid_input.hpp"
-#include "conelane/rld_parameters.hpp"
-#include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/parameter_file.hpp"
-#include "evaluation/formats/provenance.hpp"
-#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/progress/progress.hpp"
-#include "experiments/methods/method.hpp"
 #include "learning/tuning/detector_tuning.hpp"
-#include "learning/tuning/evaluation.hpp"
-#include "learning/tuning/tuner.hpp"
+#include "learning/tuning/rld_tuning.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
 
 #include <fmt/ranges.h>
 

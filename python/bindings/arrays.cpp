@@ -4,11 +4,7 @@
 #include "model/position_covariance.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <tuple>
-#include <unordered_map>
 
 namespace conelane::python {
 namespace {

@@ -1,23 +1,10 @@
 #pragma once
 
-#include "conelane/detectors.hpp"
-#include "conelane/drivable_lane.hpp"
-#include "conelane/rld_parameters.hpp"
-#include "conelane/scene.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/world/annotated_scene.hpp"
 
-#include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>

@@ -1,17 +1,10 @@
 #include "conelane/invalid_input.hpp"
-#include "conelane/planner.hpp"
 #include "conelane/speed_profile.hpp"
 #include "detectors/recipe.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <mutex>
-#include <utility>
-#include <variant>
 
 namespace conelane::python {
 namespace {

@@ -1,15 +1,10 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "python/bindings/bindings.hpp"
-
-#include <filesystem>
-#include <unordered_map>
-#include <utility>
 
 #include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>

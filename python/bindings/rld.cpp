@@ -3,9 +3,6 @@
 #include "conelane/solve_scene.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace conelane::python {
 namespace {
 

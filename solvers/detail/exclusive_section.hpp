@@ -3,7 +3,6 @@
 #include "model/deadline.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 
 namespace conelane::detail {

@@ -1,13 +1,5 @@
-#include "model/deadline.hpp"
 #include "solvers/detail/exclusive_section.hpp"
-#include "solvers/relaxation/edge_relaxation.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
-
-#include <algorithm>
-#include <mutex>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpTNLP.hpp>

@@ -1,13 +1,4 @@
-#include "model/deadline.hpp"
-#include "solvers/relaxation/edge_relaxation.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <utility>
-#include <vector>
 
 #include <nlopt.hpp>
 

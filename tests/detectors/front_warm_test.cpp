@@ -4,7 +4,6 @@
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/scene_set.hpp"
-#include "evaluation/scoring/centre_line_error.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/front_fixture.hpp"

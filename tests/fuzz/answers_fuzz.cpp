@@ -6,7 +6,7 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/program_solution.hpp"
 #include "evaluation/formats/solution_file.hpp"
-#include "experiments/comparison/lane_log.hpp"
+#include "experiments/comparison/runner.hpp"
 #include "model/lane_graph_model.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"

@@ -3,7 +3,7 @@
 
 #include "conelane/bound_certificate.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/formats/certificate_file.hpp"
+#include "evaluation/formats/solution_file.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"

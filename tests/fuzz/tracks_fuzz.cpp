@@ -1,6 +1,6 @@
 // The track readers: the bytes as each format. The line `---` separates the files of an FSD track.
 
-#include "evaluation/formats/track_readers.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 

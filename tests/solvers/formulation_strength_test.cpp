@@ -2,7 +2,7 @@
 
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
-#include "solvers/relaxation/linear_relaxation.hpp"
+#include "solvers/relaxation/relaxation_solver.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"
 

@@ -1,10 +1,11 @@
 // Relaxations and their rounding: derivatives equal finite differences, lane graphs pass the checker, and
 // they are never better than the optimum or their own bound.
 
+#include "solvers/relaxation/relaxation_solver.hpp"
+
 #include "conelane/check.hpp"
 #include "conelane/relaxation_solvers.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-#include "solvers/relaxation/edge_relaxation.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"

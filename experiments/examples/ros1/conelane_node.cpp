@@ -14,9 +14,6 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nav_msgs/Path.h>

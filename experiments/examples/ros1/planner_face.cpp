@@ -4,7 +4,6 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 
 namespace conelane_ros1 {
 namespace {

@@ -1,12 +1,11 @@
 // What readers of files say of faulty ones: refused_files.txt has texts and messages.
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/formats/frame_file.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/program_solution.hpp"
-#include "evaluation/formats/run_log.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
-#include "evaluation/formats/track_readers.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/small_program.hpp"

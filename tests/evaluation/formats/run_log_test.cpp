@@ -1,7 +1,6 @@
 // Runs of ft-fsd, from the log to the scenes.
 
-#include "evaluation/formats/run_log.hpp"
-
+#include "evaluation/formats/frame_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/scene_generation.hpp"

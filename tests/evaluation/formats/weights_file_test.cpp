@@ -7,7 +7,6 @@
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "detectors/recipe.hpp"
 #include "evaluation/formats/parameter_file.hpp"
-#include "evaluation/formats/parameter_tag.hpp"
 #include "graph_search/front/front_features.hpp"
 #include "graph_search/weights/weight_files.hpp"
 #include "tests/support/file_test.hpp"

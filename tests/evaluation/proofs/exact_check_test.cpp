@@ -3,7 +3,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/proofs/exact_program.hpp"
+#include "evaluation/proofs/exact_arithmetic.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/program_fixture.hpp"

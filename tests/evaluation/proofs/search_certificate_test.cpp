@@ -3,9 +3,9 @@
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "evaluation/formats/certificate_file.hpp"
+#include "evaluation/formats/solution_file.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
-#include "evaluation/proofs/exact_costs.hpp"
+#include "evaluation/proofs/exact_arithmetic.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/file_test.hpp"

@@ -1,6 +1,6 @@
 // Statements of a detector about its own lanes, compared with the truth.
 
-#include "evaluation/scoring/calibration.hpp"
+#include "evaluation/scoring/statistics.hpp"
 
 #include <gtest/gtest.h>
 

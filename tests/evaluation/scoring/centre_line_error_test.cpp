@@ -1,5 +1,4 @@
-#include "evaluation/scoring/centre_line_error.hpp"
-
+#include "evaluation/scoring/score.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {

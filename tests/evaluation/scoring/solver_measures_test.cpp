@@ -1,7 +1,5 @@
 // Measures of solvers, compared with values computed by hand and by scipy.
 
-#include "evaluation/scoring/solver_measures.hpp"
-
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "tests/support/testing.hpp"

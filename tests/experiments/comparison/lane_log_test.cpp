@@ -1,5 +1,4 @@
-#include "experiments/comparison/lane_log.hpp"
-
+#include "experiments/comparison/runner.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/testing.hpp"
 

@@ -1,5 +1,4 @@
-#include "experiments/comparison/summary.hpp"
-
+#include "experiments/comparison/results.hpp"
 #include "tests/support/testing.hpp"
 
 #include <deque>

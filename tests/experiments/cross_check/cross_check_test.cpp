@@ -6,7 +6,6 @@
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/cross_check/judge.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/random_scenes.hpp"

@@ -7,7 +7,7 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"
-#include "learning/tuning/parameter_ranges.hpp"
+#include "learning/tuning/rld_tuning.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/testing.hpp"
 

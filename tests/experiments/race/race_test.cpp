@@ -4,7 +4,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/world/scene_options.hpp"
+#include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/drivers.hpp"
 #include "tests/support/recorded_tracks.hpp"
 #include "tests/support/testing.hpp"

@@ -1,6 +1,5 @@
 #include "conelane/invalid_input.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
-#include "graph_search/baselines/astar_lane/path_boundaries.hpp"
 #include "graph_search/shared/search_graph.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/refusal.hpp"

@@ -1,4 +1,4 @@
-#include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
+#include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "tests/support/testing.hpp"
 
 #include <boost/polygon/voronoi.hpp>

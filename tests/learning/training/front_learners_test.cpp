@@ -2,8 +2,6 @@
 
 #include "evaluation/world/generated_tracks.hpp"
 #include "graph_search/front/front_features.hpp"
-#include "learning/training/front_gradient.hpp"
-#include "learning/training/front_judge_learner.hpp"
 #include "learning/training/front_learner.hpp"
 #include "learning/training/front_scenes.hpp"
 #include "tests/support/front_fixture.hpp"

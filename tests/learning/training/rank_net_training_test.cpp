@@ -4,8 +4,8 @@
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "graph_search/clc/clc_detector.hpp"
+#include "learning/training/clc_training.hpp"
 #include "learning/training/training_loop.hpp"
-#include "learning/training/training_run.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/testing.hpp"
 

@@ -1,7 +1,5 @@
-#include "learning/training/step_score_training.hpp"
-
 #include "conelane/invalid_input.hpp"
-#include "learning/training/training_run.hpp"
+#include "learning/training/clc_training.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/testing.hpp"
 

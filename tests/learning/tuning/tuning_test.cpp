@@ -2,9 +2,7 @@
 
 #include "conelane/rld_parameter_sets.hpp"
 #include "evaluation/input_error.hpp"
-#include "learning/tuning/evaluation.hpp"
-#include "learning/tuning/parameter_ranges.hpp"
-#include "learning/tuning/tuner.hpp"
+#include "learning/tuning/rld_tuning.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane::learning {

@@ -1,9 +1,6 @@
-#include "evaluation/world/ground_truth.hpp"
+#include "evaluation/world/annotated_scene.hpp"
 
 #include "model/geometry.hpp"
-
-#include <algorithm>
-#include <vector>
 
 namespace conelane {
 

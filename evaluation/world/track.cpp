@@ -1,8 +1,7 @@
-#include "evaluation/world/track_checks.hpp"
+#include "evaluation/world/track.hpp"
 
 #include "evaluation/input_error.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include <fmt/core.h>
