@@ -6,6 +6,7 @@ An engine stays running. `engines.py NAME {mps} {sol} {limit_s} {gap} {threads} 
 default settings but for limits, gap, threads and seed, and for what follows the name: `scip:heuristics=off,lp/pricing=s`, names and values
 as the engine has them."""
 
+import functools
 import math
 import os
 import re
@@ -147,6 +148,8 @@ def gurobi(ask):
     with gurobipy.Env(params={"OutputFlag": 0}) as env, gurobipy.read(ask.program, env) as model:
         model.Params.TimeLimit, model.Params.MIPGap, model.Params.MIPGapAbs = ask.limit_s, 0.0, ask.gap
         model.Params.Threads, model.Params.Seed = ask.threads, ask.seed % SEEDS
+        for name, value in ask.settings.items():
+            model.setParam(name, value)
         if ask.cutoff is not None:
             model.Params.Cutoff = ask.cutoff
         ask.clock(model.optimize)
@@ -164,6 +167,8 @@ def xpress(ask):
     controls = problem.controls
     controls.timelimit, controls.miprelstop, controls.mipabsstop, controls.threads = ask.limit_s, 0.0, ask.gap, ask.threads
     controls.randomseed = ask.seed % SEEDS
+    for name, value in ask.settings.items():
+        setattr(controls, name, value)
     if ask.cutoff is not None:
         controls.mipabscutoff = ask.cutoff
     ask.clock(problem.optimize)
@@ -185,6 +190,8 @@ def cplex(ask):
     set_to.randomseed.set(ask.seed % SEEDS)
     tolerances.mipgap.set(0.0)
     tolerances.absmipgap.set(ask.gap)
+    for name, value in ask.settings.items():
+        functools.reduce(getattr, name.split("."), set_to).set(value)
     if ask.cutoff is not None:
         tolerances.uppercutoff.set(ask.cutoff)
     ask.clock(problem.solve)
@@ -200,7 +207,7 @@ def copt(ask):
     model = coptpy.Envr().createModel()
     model.setParam("Logging", 0)
     model.readMps(ask.program)
-    for name, value in (("TimeLimit", ask.limit_s), ("RelGap", 0.0), ("AbsGap", ask.gap), ("Threads", ask.threads)):
+    for name, value in (("TimeLimit", ask.limit_s), ("RelGap", 0.0), ("AbsGap", ask.gap), ("Threads", ask.threads), *ask.settings.items()):
         model.setParam(name, value)
     ask.clock(model.solve)
     claim = {coptpy.COPT.OPTIMAL: "optimal", coptpy.COPT.INFEASIBLE: "infeasible"}.get(model.status, "stopped")
@@ -216,6 +223,8 @@ def mosek(ask):
         task.putintparam(library.iparam.num_threads, ask.threads)
         for name, value in ((library.dparam.mio_max_time, ask.limit_s), (library.dparam.mio_tol_rel_gap, 0.0), (library.dparam.mio_tol_abs_gap, ask.gap)):
             task.putdouparam(name, value)
+        for name, value in ask.settings.items():
+            task.putparam(name, str(value))
         ask.clock(task.optimize)
         kind = library.soltype.itg
         status, problem = task.getsolsta(kind), task.getprosta(kind)

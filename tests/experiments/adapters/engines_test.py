@@ -24,6 +24,10 @@ LANE, SQUARE = [(4, 1.5), (7.2, 1.5), (4, -1.5), (7.2, -1.5)], [(30, 10), (33.2,
 SCENES = [LANE + [(x + shift, y - shift) for x, y in SQUARE] for shift in (0, 3, 9)] + [LANE, LANE[:3]]
 PARAMETERS = {"d_e": 3.2, "d_t": 1.7, "theta_e": 3.141592653589793, "theta_t": 2.0, "w_s": 0.4, "w_t": 0.5, "w_p": 1.2, "w_b": 1.0, "d_min": 0.0, "d_h": 6.0,
               "theta_heading": 1.2, "d_near": 6.0, "d_max": 6.5, "s_crit": 2.5, "t_crit": 100.0}
+# A setting of each engine that ends no search early.
+SETTINGS = {"highspy": "presolve=off,mip_heuristic_effort=0.1", "scip": "separating=off,lp/solvefreq=1", "cp-sat": "linearization_level=2", "cbc-today": "cuts=off",
+            "glpsol": "mostf", "symphony": "j=0", "lp-solve": "BB", "gurobi": "Cuts=0", "xpress": "cutstrategy=0", "cplex": "mip.strategy.probe=1",
+            "copt": "CutLevel=0"}
 TWO = """NAME two FREE
 ROWS
  N cost
@@ -97,10 +101,19 @@ class Engines(unittest.TestCase):
             self.skipTest("Mosek has no licence here")
         self.assertEqual([record["status"] for record in self.exact], ["optimal"] * 4 + ["infeasible"])
         command = f"exec:{name}={python} -B {os.path.join(ADAPTERS, 'engines.py')} {name}"
-        for options in ((), ("--all-rows", "--warm-start")):
-            for record, exact in zip(self.solved(command, *options), self.exact, strict=True):
-                self.assertEqual(record["status"], exact["status"], f"{options} {record}")
+        for settings, *options in (("",), (":" + SETTINGS.get(name, ""), "--all-rows", "--warm-start")):
+            for record, exact in zip(self.solved(command + settings, *options), self.exact, strict=True):
+                self.assertEqual(record["status"], exact["status"], f"{settings} {options} {record}")
                 self.assertAlmostEqual(record.get("objective", 0.0), exact.get("objective", 0.0), delta=1e-6)
+        if name in ("highspy", "scip", "cp-sat", "gurobi", "xpress", "cplex", "copt"):  # programs of their own say it in their logs
+            with self.assertRaisesRegex(AssertionError, "5 of 5 answers are errors"):
+                self.solved(command + ":no_such_setting=1")
+
+    def test_settings_follow_the_name(self):
+        self.assertEqual(frame.named("scip"), ("scip", {}))
+        self.assertEqual(frame.named("cbc:cuts=off,BB,depth=-1,gap=0.5"), ("cbc", {"cuts": "off", "BB": "", "depth": -1, "gap": 0.5}))
+        asked = frame.Question("p", "s", settings={"cuts": "off", "BB": "", "depth": 0})
+        self.assertEqual(asked.arguments("-"), ["-cuts", "off", "-BB", "-depth", "0"])
 
     def ask(self, engine, **asked):
         with open(self.path("two.mps"), "w", encoding="ascii") as stream:
