@@ -73,7 +73,7 @@ class Builder {
         }
     }
     [[nodiscard]] std::uint16_t place(std::size_t edge, std::size_t cone) const {
-        return place_[edge][problem_.graph.edges[edge].i == cone ? 0 : 1];
+        return place_[edge][problem_.graph.edges[edge].j == cone ? 1 : 0];
     }
 
     void add_rungs() {

@@ -8,7 +8,9 @@
 #include "evaluation/outside/solver_input.hpp"
 #include "evaluation/proofs/claim_verdict.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
+#include "model/strip_model.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
@@ -46,8 +48,9 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
     command.add_option("--id", source.id, "id of the scene")->required();
     command
         .add_option("--formulation", source.formulation,
-                    "rows and columns of the program: tight, or paper as printed")
-        ->check(CLI::IsMember({"tight", "paper"}))
+                    "rows and columns of the program: tight, paper as printed, or strip, with hand-set "
+                    "costs or with the limits and costs of --params")
+        ->check(CLI::IsMember({"tight", "paper", "strip"}))
         ->capture_default_str();
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
     add_parameter_options(command, source.parameters, "the defaults");
@@ -97,12 +100,10 @@ struct ExportOptions {
     double time_limit_ms = 10'000.0;  ///< of the proof
 };
 
-void export_program(const ExportOptions& options) {
+void write_program(const ExportOptions& options, const BinaryProgram& program) {
     const std::string ending = std::filesystem::path(options.out).extension().string();
     if (ending != ".mps" && ending != ".lp")
         throw InvalidInput("--out", "'" + options.out + "' does not end in .mps or .lp");
-    const SceneProgram scene_program(options.source);
-    const BinaryProgram& program = scene_program.program;
     AtomicFile file(options.out);
     // A name must be one word in these formats.
     const std::string name = "conelane_" + options.source.formulation;
@@ -113,6 +114,22 @@ void export_program(const ExportOptions& options) {
     }
     file.commit();
     fmt::print("{} columns and {} rows in {}\n", program.columns.size(), program.rows.size(), options.out);
+}
+
+void export_strip(const ExportOptions& options) {
+    StripParameters parameters = strip_parameters_of(options.source.parameters.load());
+    if (options.source.parameters.name.empty()) {
+        parameters = driving_strip_parameters();
+    }
+    const StripProblem problem = make_strip_problem(load_scene(options.source), parameters);
+    StripModel model(problem);
+    if (model.build(Deadline())) throw InvalidInput("--id", "the program of the scene is too large");
+    write_program(options, model.program());
+}
+
+void export_program(const ExportOptions& options) {
+    if (options.source.formulation == "strip") return export_strip(options);
+    write_program(options, SceneProgram(options.source).program);
 }
 
 SolutionFile read_solution(const std::string& path, const BinaryProgram& program) {
@@ -192,6 +209,8 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
 }
 
 void import_solution(const ExportOptions& options) {
+    if (options.source.formulation == "strip")
+        throw InvalidInput("--formulation", "solutions of strips are not read; tight and paper are");
     const SceneProgram program(options.source);
     const SolutionFile solution = read_solution(options.solution, program.program);
     const SolutionRecord record = to_record(solution, program, options);
