@@ -265,38 +265,48 @@ StripProblem make_strip_problem(const Scene& scene, const StripParameters& param
     return *std::move(made.problem);
 }
 
+namespace {
+
+/// What is the same for each strip between the boundaries: turns and ends. Nothing if an edge is not allowed.
+std::optional<double> cost_of_boundaries(const StripProblem& problem, const StripLane& lane) {
+    double cost = 0.0;
+    for (const auto* side : {&lane.left, &lane.right}) {
+        const auto place = [&](std::size_t cone, std::size_t other) {
+            const auto& incident = problem.graph.incident[cone];
+            const auto edge = std::ranges::find_if(
+                incident, [&](std::size_t e) { return problem.other(e, cone) == other; });
+            return static_cast<std::size_t>(edge - incident.begin());
+        };
+        for (std::size_t k = 1; k < side->size(); ++k) {
+            const std::size_t cone = (*side)[k];
+            const std::size_t in = place(cone, (*side)[k - 1]);
+            if (in == problem.degree(cone)) return std::nullopt;
+            if (k + 1 == side->size()) {
+                cost += problem.end_cost(cone, in);
+                continue;
+            }
+            const std::size_t out = place(cone, (*side)[k + 1]);
+            if (out == problem.degree(cone)) return std::nullopt;
+            cost += problem.turn_cost(cone, side == &lane.left, in, out);
+        }
+    }
+    return cost;
+}
+
+}  // namespace
+
 std::optional<StripOfLane> cheapest_strip(const StripProblem& problem, const StripLane& lane) {
     const auto& [left, right] = lane;
     if (left.size() < 2 || right.size() < 2) return std::nullopt;
-    // Turns and ends are the same for each strip; left advances along i, right along j.
-    double fixed = 0.0;
-    for (const auto* side : {&left, &right}) {
-        const bool is_left = side == &left;
-        std::vector<std::size_t> edges;
-        for (std::size_t k = 1; k < side->size(); ++k) {
-            const auto& incident = problem.graph.incident[(*side)[k]];
-            const auto edge = std::ranges::find_if(
-                incident, [&](std::size_t e) { return problem.other(e, (*side)[k]) == (*side)[k - 1]; });
-            if (edge == incident.end()) return std::nullopt;
-            edges.push_back(*edge);
-        }
-        const auto place = [&](std::size_t cone, std::size_t edge) {
-            const auto& incident = problem.graph.incident[cone];
-            return static_cast<std::size_t>(std::ranges::find(incident, edge) - incident.begin());
-        };
-        for (std::size_t k = 1; k < edges.size(); ++k) {
-            const std::size_t cone = (*side)[k];
-            fixed += problem.turn_cost(cone, is_left, place(cone, edges[k - 1]), place(cone, edges[k]));
-        }
-        fixed += problem.end_cost(side->back(), place(side->back(), edges.back()));
-    }
+    const std::optional<double> fixed = cost_of_boundaries(problem, lane);
+    if (!fixed) return std::nullopt;
     struct Reached {
         double cost = StripProblem::kForbidden;
         std::size_t by = 0;  ///< triangle
         bool is_left = false;
     };
     const std::size_t columns = right.size();
-    std::vector<Reached> reached(left.size() * columns);
+    std::vector<Reached> reached(left.size() * columns);  // left advances along rows, right along columns
     const auto rung = std::ranges::find_if(problem.rungs, [&](const StripRung& r) {
         return r.may_start && r.left == left.front() && r.right == right.front();
     });
@@ -319,7 +329,7 @@ std::optional<StripOfLane> cheapest_strip(const StripProblem& problem, const Str
             }
         }
     }
-    const double cost = reached.back().cost + fixed;
+    const double cost = reached.back().cost + *fixed;
     if (!(cost < StripProblem::kForbidden) || !problem.rungs[rung_at.back()].may_end) return std::nullopt;
     StripOfLane strip{{}, cost};
     for (std::size_t k = reached.size() - 1; k > 0; k -= reached[k].is_left ? columns : 1)
