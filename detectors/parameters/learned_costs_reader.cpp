@@ -7,30 +7,17 @@
 
 namespace conelane {
 
-namespace {
-
-template <typename Costs>
-std::shared_ptr<const Costs> parse(std::string_view text, std::string_view command, std::string_view of) {
-    WeightsReader file(text, "weights", command);
+std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view text) {
+    WeightsReader file(text, "weights", "conelane train rld");
     (void)file.version({1});
-    Costs costs;
-    for (const auto part : costs.kParts)
+    for (const LearnedPart part : kLearnedParts)
         file.require_features("features." + std::string(to_string(part)), learned_features(part));
+    LearnedCosts costs;
     for_each_costs_list(
         costs, [&](const std::string& key, std::vector<double>& numbers) { numbers = file.numbers(key); });
-    file.require_no_other(of);
+    file.require_no_other("learned costs");
     validate(costs);
-    return std::make_shared<const Costs>(std::move(costs));
-}
-
-}  // namespace
-
-std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view text) {
-    return parse<LearnedCosts>(text, "conelane train rld", "learned costs");
-}
-
-std::shared_ptr<const StripCosts> parse_strip_costs(std::string_view text) {
-    return parse<StripCosts>(text, "conelane train strip", "costs of strips");
+    return std::make_shared<const LearnedCosts>(std::move(costs));
 }
 
 std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file) {

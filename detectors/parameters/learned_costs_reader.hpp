@@ -1,7 +1,6 @@
 #pragma once
 
 #include "conelane/learned_costs.hpp"
-#include "model/strip_costs.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -13,7 +12,7 @@ namespace conelane {
 /// Calls use(key, numbers) for each list of numbers, in the order of files.
 template <typename Costs, typename Use>
 void for_each_costs_list(Costs& costs, const Use& use) {
-    for (const auto part : costs.kParts) {
+    for (const LearnedPart part : kLearnedParts) {
         const std::string name(to_string(part));
         use(name + "_linear", costs.of(part).linear);
         use(name + "_hidden", costs.of(part).hidden);
@@ -27,10 +26,7 @@ void for_each_costs_list(Costs& costs, const Use& use) {
 /// units has two empty lists. Throws InvalidInput naming the key, or the line that is not JSON.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view json);
 
-/// The same for StripCosts, which `conelane train strip` writes.
-[[nodiscard]] std::shared_ptr<const StripCosts> parse_strip_costs(std::string_view json);
-
-/// Learned costs of RLD from a file. Throws InvalidInput naming the file too, also if it cannot be read.
+/// The same from a file. Throws InvalidInput naming the file too, also if it cannot be read.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file);
 
 }  // namespace conelane
