@@ -105,7 +105,7 @@ TEST(StripSolver, AgreesWithABackendOfTheProgram) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(seed);
         const Scene scene =
-            seed % 4 == 0 ? strewn_scene(20, 20.0, 14.0, seed) : random_scene(1000 + seed, 12 + seed % 10);
+            seed % 4 == 0 ? strewn_scene(14, 16.0, 12.0, seed) : random_scene(1000 + seed, 10 + seed % 5);
         const StripProblem problem = make_strip_problem(scene, random_strip_parameters(seed));
         for (const MilpBackend& backend : milp_backends()) {
             if (backend.entry.name == "cbc-main" && seed % 8 != 0) continue;
