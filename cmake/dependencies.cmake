@@ -13,7 +13,7 @@ function(conelane_require_library name header)
         return()
     endif()
     find_library(CONELANE_${name}_LIBRARY ${name} REQUIRED)
-    find_path(CONELANE_${name}_INCLUDE_DIR ${header} REQUIRED)
+    find_path(CONELANE_${name}_INCLUDE_DIR ${header} PATH_SUFFIXES ${name} REQUIRED)
     mark_as_advanced(CONELANE_${name}_LIBRARY CONELANE_${name}_INCLUDE_DIR)
     add_library(conelane_external_${name} UNKNOWN IMPORTED GLOBAL)
     set_target_properties(conelane_external_${name} PROPERTIES

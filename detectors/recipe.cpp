@@ -7,16 +7,14 @@
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_weights_reader.hpp"
+#include "graph_search/front/front_weights.hpp"
 #include "graph_search/shared/json_reader.hpp"
 #include "graph_search/shared/parameter_field.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
-#include <string>
 #include <utility>
 
 namespace conelane {
@@ -54,13 +52,8 @@ constexpr TunedRecipe tuned() {
     return {[] {
                 std::vector<TunableParameter> all;
                 for (const ParameterField<Parameters>& field : fields()) {
-                    all.push_back({.key = field.key,
-                                   .unit = field.unit,
-                                   .lowest = field.lowest,
-                                   .highest = field.highest,
-                                   .logarithmic = field.logarithmic,
-                                   .description = field.description,
-                                   .start = Parameters{}.*field.value});
+                    all.push_back({field.key, field.unit, field.lowest, field.highest, field.logarithmic,
+                                   field.description, Parameters{}.*field.value});
                 }
                 return all;
             },
@@ -77,18 +70,9 @@ constexpr std::string_view kShapeCourses[]{"fsd_1", "fsd_2", "fsd_4", "fsd_5", "
 constexpr std::string_view kDelaunayBeamCourses[]{
     "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
 /// The same, and the courses in view when hitting a cone got a cost.
-constexpr std::string_view kAstarLaneCourses[]{"fsd_1",
-                                               "fsd_2",
-                                               "fsd_4",
-                                               "fsd_5",
-                                               "fsd_6",
-                                               "fsd_7",
-                                               "fsd_9",
-                                               "pacsim_FSE22",
-                                               "pacsim_FSG19",
-                                               "pacsim_FSO20",
-                                               "eufs_small_track",
-                                               "eufs_peanut"};
+constexpr std::array<std::string_view, 12> kAstarLaneCourses{
+    {"fsd_1", "fsd_2", "fsd_4", "fsd_5", "fsd_6", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19",
+     "pacsim_FSO20", "eufs_small_track", "eufs_peanut"}};
 
 constexpr DetectorRecipe kRecipes[]{
     {{"front",
@@ -133,10 +117,6 @@ constexpr DetectorRecipe kRecipes[]{
       ColorUse::by_weight},
      LearnedFrom::nothing(),
      RldRecipe{.make_solver = path_pair, .cones = {kRldConeSet, kRldContext}}},
-    {{"rld-shape-context", "rld-context with the costs of the lane's shape", ClosedLanes::never,
-      ColorUse::by_weight},
-     LearnedFrom({}, kShapeCourses),
-     RldRecipe{.make_solver = path_pair, .cones = {kRldConeSet, kRldContext}, .shape_costs = true}},
     {{"delaunay-beam",
       "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
       "the lowest cost",

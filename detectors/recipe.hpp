@@ -3,7 +3,6 @@
 #include "conelane/detectors.hpp"
 #include "conelane/rld_detector.hpp"
 #include "conelane/rld_solver.hpp"
-#include "detectors/parameters/parameter_files.hpp"
 #include "graph_search/weights/weight_files.hpp"
 
 #include <array>
@@ -16,6 +15,11 @@
 #include <vector>
 
 namespace conelane {
+
+// The files in parameters/, byte by byte, embedded when the library was configured.
+extern const std::string_view kLearnedWeightsFile;
+/// NAME.json; empty if there is none.
+[[nodiscard]] std::string_view parameter_file(std::string_view name);
 
 struct FrontOptions;
 
@@ -80,7 +84,6 @@ class LearnedFrom {
 inline constexpr std::array kFrontWeights{&kFrontFile};
 inline constexpr std::array kLearnedRldWeights{&kLearnedWeightsFile};
 inline constexpr std::array kPaperClcWeights{&kRankNetPaperFile};
-inline constexpr std::array kClcRankWeights{&kRankNetExtendedFile};
 inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile};
 
 /// How to make a detector.

@@ -42,18 +42,9 @@ SolvedScene solve(RldSolver& solver, const Scene& scene, const RldParameters& pa
 }
 
 LaneStatus lane_status(SolveStatus status) {
-    switch (status) {
-        case SolveStatus::optimal:
-        case SolveStatus::feasible:
-            return LaneStatus::found;
-        case SolveStatus::infeasible:
-            return LaneStatus::none;
-        case SolveStatus::stopped:
-            return LaneStatus::stopped;
-        case SolveStatus::error:
-            break;
-    }
-    return LaneStatus::error;
+    if (status == SolveStatus::infeasible) return LaneStatus::none;
+    if (status == SolveStatus::stopped) return LaneStatus::stopped;
+    return status == SolveStatus::error ? LaneStatus::error : LaneStatus::found;
 }
 
 class RldDetector : public LaneDetector {

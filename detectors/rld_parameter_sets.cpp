@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "detectors/parameters/parameter_files.hpp"
+#include "detectors/recipe.hpp"
 #include "graph_search/shared/json_reader.hpp"
 
 #include <algorithm>

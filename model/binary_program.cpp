@@ -1,7 +1,5 @@
 #include "model/binary_program.hpp"
 
-#include "model/deadline.hpp"
-
 namespace conelane {
 
 std::string to_string(const Label& label) {

@@ -5,8 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -62,6 +62,13 @@ struct BinaryProgram {
                    double upper = 1.0);
     /// Removes this row and all later ones.
     void truncate_rows(std::size_t first);
+    /// Calls `use(column, value)` for each entry of a row, in their order.
+    template <typename Use>
+    void for_each_entry(std::size_t row, const Use& use) const {
+        const auto end = static_cast<std::size_t>(row_starts[row + 1]);
+        for (auto entry = static_cast<std::size_t>(row_starts[row]); entry < end; ++entry)
+            use(static_cast<std::size_t>(entry_columns[entry]), entry_values[entry]);
+    }
 };
 
 /// Largest number of columns and entries together of a program built within limits, below 300 MB; a solver
@@ -82,6 +89,13 @@ class RowWriter {
     void begin(const Label& label, double lower, double upper);
     void add(int column, double coefficient);
     void end();
+    /// A whole row of few terms.
+    void write(const Label& label, double lower, double upper,
+               std::initializer_list<std::pair<int, double>> terms) {
+        begin(label, lower, upper);
+        for (const auto& [column, coefficient] : terms) add(column, coefficient);
+        end();
+    }
 
   private:
     BinaryProgram& program_;

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

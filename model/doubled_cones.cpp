@@ -1,7 +1,6 @@
 #include "model/doubled_cones.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 

@@ -2,8 +2,6 @@
 
 #include "model/constraints/families.hpp"
 
-#include <array>
-
 namespace conelane {
 namespace {
 

@@ -1,10 +1,8 @@
 #include "model/geometry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 namespace conelane {
 namespace {

@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "model/doubled_cones.hpp"
 
+#include <array>
 #include <cmath>
 #include <exception>
 #include <new>
@@ -44,29 +45,13 @@ LaneAnswer LaneDetector::detect(const Scene& scene, const DetectionLimits& limit
 }
 
 std::string_view to_string(LaneStatus status) {
-    switch (status) {
-        case LaneStatus::found:
-            return "found";
-        case LaneStatus::none:
-            return "none";
-        case LaneStatus::stopped:
-            return "stopped";
-        case LaneStatus::error:
-            break;
-    }
-    return "error";
+    constexpr std::array<std::string_view, 4> kNames{"found", "none", "stopped", "error"};
+    return kNames[static_cast<std::size_t>(status)];
 }
 
 std::string_view to_string(StopReason reason) {
-    switch (reason) {
-        case StopReason::iterations:
-            return "iterations";
-        case StopReason::memory:
-            return "memory";
-        case StopReason::time:
-            break;
-    }
-    return "time";
+    constexpr std::array<std::string_view, 3> kNames{"time", "iterations", "memory"};
+    return kNames[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace conelane

@@ -12,7 +12,6 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 namespace conelane {
 namespace {

@@ -73,17 +73,8 @@ std::string_view to_string(LearnedPart part) {
 }
 
 std::span<const LearnedFeature> learned_features(LearnedPart part) {
-    switch (part) {
-        case LearnedPart::edge:
-            return kEdge;
-        case LearnedPart::turn:
-            return kTurn;
-        case LearnedPart::near_end:
-            return kNearEnd;
-        case LearnedPart::far_end:
-            break;
-    }
-    return kFarEnd;
+    static constexpr std::array<std::span<const LearnedFeature>, 4> kOfPart{kEdge, kTurn, kNearEnd, kFarEnd};
+    return kOfPart[static_cast<std::size_t>(part)];
 }
 
 double LearnedNetwork::operator()(std::span<const double> features) const {

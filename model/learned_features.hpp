@@ -7,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <span>
 #include <vector>
 
 namespace conelane {

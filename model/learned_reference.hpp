@@ -5,7 +5,6 @@
 #include "conelane/scene.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>

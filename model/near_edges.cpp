@@ -1,6 +1,5 @@
 #include "model/near_edges.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace conelane {

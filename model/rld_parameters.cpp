@@ -4,7 +4,6 @@
 #include "conelane/learned_costs.hpp"
 
 #include <array>
-#include <cmath>
 #include <string>
 
 namespace conelane {

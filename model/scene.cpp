@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "model/geometry.hpp"
+#include "model/position_covariance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -53,41 +54,14 @@ double Pose::left_m(const Point& point) const {
 }
 
 std::string_view to_string(ConeColor color) {
-    switch (color) {
-        case ConeColor::blue:
-            return "blue";
-        case ConeColor::yellow:
-            return "yellow";
-        case ConeColor::orange:
-            return "orange";
-        case ConeColor::big_orange:
-            return "big_orange";
-        case ConeColor::unknown:
-            break;
-    }
-    return "unknown";
+    constexpr std::array<std::string_view, 5> kNames{"unknown", "blue", "yellow", "orange", "big_orange"};
+    return kNames[static_cast<std::size_t>(color)];
 }
 
 ColorProbabilities probabilities_of(ConeColor color) {
-    ColorProbabilities result;
-    switch (color) {
-        case ConeColor::blue:
-            result.blue = 1.0;
-            break;
-        case ConeColor::yellow:
-            result.yellow = 1.0;
-            break;
-        case ConeColor::orange:
-            result.orange = 1.0;
-            break;
-        case ConeColor::big_orange:
-            result.big_orange = 1.0;
-            break;
-        case ConeColor::unknown:
-            result.unknown = 1.0;
-            break;
-    }
-    return result;
+    const auto is = [color](ConeColor of) { return color == of ? 1.0 : 0.0; };
+    return {is(ConeColor::unknown), is(ConeColor::blue), is(ConeColor::yellow), is(ConeColor::orange),
+            is(ConeColor::big_orange)};
 }
 
 ConeColor most_probable_color(const ColorProbabilities& probabilities) {
@@ -99,6 +73,14 @@ ConeColor most_probable_color(const ColorProbabilities& probabilities) {
     const auto best = std::ranges::max_element(labels, {}, &std::pair<double, ConeColor>::first);
     const auto is_best = [&](const auto& label) { return label.first == best->first; };
     return std::ranges::count_if(labels, is_best) > 1 ? ConeColor::unknown : best->second;
+}
+
+std::optional<PositionCovariance> covariance_of(const std::array<double, 4>& matrix) {
+    constexpr double kOff = 1e-6;
+    const auto [xx, xy, yx, yy] = matrix;
+    if (xy == yx) return PositionCovariance{xx, xy, yy};
+    if (!(std::abs(xy - yx) <= kOff * std::max(std::abs(xy), std::abs(yx)))) return std::nullopt;
+    return PositionCovariance{xx, 0.5 * xy + 0.5 * yx, yy};
 }
 
 bool PositionCovariance::is_valid() const {

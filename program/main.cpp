@@ -3,26 +3,21 @@
 #include "evaluation/formats/interruption.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "experiments/options/command_line.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
@@ -84,9 +79,9 @@ std::string version() {
                        origin.compiler, solvers);
 }
 
-/// Adds the commands by what they are for, in the order of the help; those without a group are not in it.
+/// Adds the commands by what they are for, in the order of the help.
 void add_commands(CLI::App& program) {
-    using namespace conelane::experiments;
+    using namespace conelane::program;
     struct Group {
         const char* name;
         std::vector<void (*)(CLI::App&)> commands;
@@ -100,8 +95,7 @@ void add_commands(CLI::App& program) {
          {add_solve_command, add_check_command, add_certify_command, add_export_command,
           add_instances_command}},
         {"Learn", {add_train_command, add_tune_command}},
-        {"Drive", {add_drive_command, add_race_command}},
-        {"", {add_echo_command}}};
+        {"Drive", {add_drive_command, add_race_command}}};
     for (const Group& group : groups) {
         for (const auto add : group.commands) {
             add(program);
@@ -116,6 +110,40 @@ struct OldName {
     std::string_view name;
     std::vector<const char*> words;
 };
+
+/// A word that is no longer there, and what serves its purpose.
+struct Removed {
+    std::string_view command;  ///< empty: any
+    std::string_view word;     ///< or a part of a list
+    std::string_view instead;
+};
+constexpr std::array<Removed, 11> kRemoved{{
+    {"", "rld-shape-context", "rld-context with --params shape"},
+    {"", "clc-no-beam", "clc"},
+    {"", "clc-longest", "clc"},
+    {"", "clc-delaunay", "clc-paper"},
+    {"study", "anytime", "study backends --solvers path-pair --sizes all --gap-limits"},
+    {"study", "confidence-and-colour", "compare --confidence and --color"},
+    {"study", "features", "instances, whose index.csv has the features of each problem"},
+    {"study", "noise", "the test that docs/limits.md names"},
+    {"study", "--aslib", "--out, whose rows have every run"},
+    {"tune", "--folds", "cross-validate, which holds out families of courses"},
+    {"tune", "--rounds", "--evaluations, whose search changes the weights too"},
+}};
+
+/// Throws CLI::ParseError naming a removed word and what to use instead.
+void refuse_removed_words(std::span<const char* const> words) {
+    for (const std::string word : words) {
+        for (const std::string& part : CLI::detail::split(word, ',')) {
+            const auto removed = std::ranges::find_if(kRemoved, [&](const Removed& one) {
+                return (one.command.empty() || one.command == words.front()) && part == one.word;
+            });
+            if (removed == kRemoved.end()) continue;
+            throw CLI::ParseError(fmt::format("'{}' is no longer there; use {}", part, removed->instead),
+                                  CLI::ExitCodes::ExtrasError);
+        }
+    }
+}
 
 /// The words of the command line, an old name replaced by the new words.
 std::vector<const char*> current_words(std::span<char* const> arguments) {
@@ -150,6 +178,7 @@ int run(int argument_count, char** arguments) {
     const std::vector<const char*> words =
         current_words(std::span(arguments, static_cast<std::size_t>(argument_count)));
     try {
+        if (words.size() > 1) refuse_removed_words(std::span(words).subspan(1));
         experiments::refuse_misread_words(program, std::span(words).subspan(1));
         program.parse(static_cast<int>(words.size()), words.data());
     } catch (const CLI::Success& help) {

@@ -2,7 +2,6 @@
 
 #include "graph_search/shared/weights_reader.hpp"
 
-#include <string>
 #include <utility>
 
 namespace conelane {

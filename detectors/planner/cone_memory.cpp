@@ -18,6 +18,10 @@ struct Match {
     std::size_t remembered;
 };
 
+double bearing_rad(const Pose& pose, const Point& place) {
+    return std::abs(std::atan2(pose.left_m(place), pose.ahead_m(place)));
+}
+
 }  // namespace
 
 ConeMemory::ConeMemory(const ConeMemorySettings& settings, const ShiftSettings& shift_settings)
@@ -25,9 +29,11 @@ ConeMemory::ConeMemory(const ConeMemorySettings& settings, const ShiftSettings& 
 
 std::optional<RigidShift> ConeMemory::observe(const Frame& frame) {
     ++frame_;
-    range_m_ = 0.0;
+    pose_ = frame.pose;
+    range_m_ = widest_rad_ = 0.0;
     for (const Cone& cone : frame.cones) {
         range_m_ = std::max(range_m_, (cone.position - frame.pose.position).norm());
+        widest_rad_ = std::max(widest_rad_, bearing_rad(frame.pose, cone.position));
     }
     const double near_m = std::max(range_m_, settings_.max_range_m) + settings_.same_id_gate_m;
     Indices near;
@@ -41,7 +47,7 @@ std::optional<RigidShift> ConeMemory::observe(const Frame& frame) {
     }
     associate(frame, near, remembered_of);
     for (std::size_t k = 0; k < frame.cones.size(); ++k) see(frame.cones[k], remembered_of[k]);
-    miss_unseen(frame, near);
+    miss_unseen(near);
     forget();
     return shift;
 }
@@ -133,6 +139,7 @@ void ConeMemory::see(const Cone& seen, std::size_t remembered) {
         cones_.push_back({.id = next_id_++, .position = seen.position, .confidence = seen.confidence});
     } else {
         RememberedCone& cone = cones_[remembered];
+        if ((seen.position - cone.position).norm() > settings_.moved_m) cone.sightings = 0;
         ++cone.sightings;
         const double weight = 1.0 / std::min(cone.sightings, settings_.averaged_sightings);
         cone.position += weight * (seen.position - cone.position);
@@ -145,21 +152,17 @@ void ConeMemory::see(const Cone& seen, std::size_t remembered) {
     ++cone.colors[static_cast<std::size_t>(seen.color)];
 }
 
-/// Range and bearings of the sensor are not known. Assumption: it sees about as far and as wide as in this
-/// frame.
-void ConeMemory::miss_unseen(const Frame& frame, const Indices& near) {
-    double widest_rad = 0.0;
-    const auto bearing_rad = [&](const Point& place) {
-        return std::abs(std::atan2(frame.pose.left_m(place), frame.pose.ahead_m(place)));
-    };
-    for (const Cone& cone : frame.cones) widest_rad = std::max(widest_rad, bearing_rad(cone.position));
+bool ConeMemory::is_in_sure_view(const Point& place) const {
+    const double distance_m = (place - pose_.position).norm();
+    return distance_m <= settings_.sure_view_share * range_m_ && distance_m >= settings_.blind_m &&
+           bearing_rad(pose_, place) <= settings_.sure_view_share * widest_rad_;
+}
+
+void ConeMemory::miss_unseen(const Indices& near) {
     for (const std::size_t i : near) {
         RememberedCone& cone = cones_[i];
-        if (cone.last_seen == frame_) continue;
-        const double distance_m = (cone.position - frame.pose.position).norm();
-        if (distance_m > settings_.sure_view_share * range_m_ || distance_m < settings_.blind_m) continue;
-        if (bearing_rad(cone.position) > settings_.sure_view_share * widest_rad) continue;
-        cone.evidence -= settings_.missed_evidence;
+        if (cone.last_seen != frame_ && is_in_sure_view(cone.position))
+            cone.evidence -= settings_.missed_evidence;
     }
 }
 

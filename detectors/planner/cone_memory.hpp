@@ -44,6 +44,13 @@ class ConeMemory {
         std::array<int, 5> colors{};  ///< sightings in each color
     };
     [[nodiscard]] const std::vector<RememberedCone>& cones() const { return cones_; }
+    [[nodiscard]] bool is_seen_lately(const RememberedCone& cone) const {
+        return frame_ - cone.last_seen < settings_.lately_frames;
+    }
+
+    /// Whether the last frame would have shown a cone at this place. Range and bearings of the sensor are not
+    /// known. Assumption: it sees about as far and as wide as in that frame.
+    [[nodiscard]] bool is_in_sure_view(const Point& place) const;
 
   private:
     using Indices = std::vector<std::size_t>;
@@ -52,7 +59,7 @@ class ConeMemory {
                                                      const Indices& remembered_of) const;
     void associate(const Frame& frame, const Indices& near, Indices& remembered_of);
     void see(const Cone& seen, std::size_t remembered);
-    void miss_unseen(const Frame& frame, const Indices& near);
+    void miss_unseen(const Indices& near);
     void forget();
 
     ConeMemorySettings settings_;
@@ -60,7 +67,9 @@ class ConeMemory {
     std::vector<RememberedCone> cones_;  ///< by id
     std::int64_t frame_ = 0;
     ConeId next_id_ = kNoId + 1;
-    double range_m_ = 0.0;  ///< of the last frame: distance of the farthest cone
+    Pose pose_;                ///< of the last frame
+    double range_m_ = 0.0;     ///< of that frame: distance of the farthest cone
+    double widest_rad_ = 0.0;  ///< and the widest bearing of a cone
 };
 
 /// The color that was seen most often; unknown if none was seen.

@@ -446,12 +446,17 @@ void KnownCoursePlanner::plan_registered(Tracking& tracking, Plan& plan, double 
     plan.stop = is_finished;
     if (plan.age_s > options_.max_age_s || tracking.off_route_m > kMaxOffRoute_m) {
         plan.state = is_finished ? PlanState::finished : PlanState::lost;
+        if (!is_finished)
+            plan.reason = plan.age_s > options_.max_age_s ? "too few cones fit the course"
+                                                          : "the car is off the course";
         // Behind the last line there may be no cone: what is left of the lane is straight on.
         if (!is_finished || tracking.off_route_m > kMaxOffRoute_m) return;
     } else {
         plan.state = is_finished ? PlanState::finished : is_old ? PlanState::bridging : PlanState::following;
     }
     plan.lane = route_ahead(tracking);
+    const double to_line_m = shape().finish_s_m - tracking.at_m;
+    if (to_line_m >= 0.0 && to_line_m <= plan.lane.length_m) plan.stop_line_m = to_line_m;
     const double trusted_m =
         tracking.seen_ahead_m + kSeenBeyond_m - (tracking.at_m - tracking.supported_at_m);
     plan.safe_m = std::clamp(trusted_m, 0.0, plan.lane.length_m);

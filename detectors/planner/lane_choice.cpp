@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -22,6 +23,7 @@ constexpr double kSameTime_s = 1e-9;
 void PathMemory::remember(const DrivableLane& lane, double time_s) {
     lane_ = lane;
     time_s_ = time_s;
+    for (double& end_m : trust_ends_m_) end_m = std::max(0.0, end_m - reached_m_);
     reached_m_ = 0.0;
 }
 
@@ -33,12 +35,25 @@ DrivableLane PathMemory::left(const Pose& pose, double time_s) {
     if (!lane_) return {};
     if (time_s - time_s_ > max_age_s_ + kSameTime_s) {
         lane_.reset();
+        trust_ends_m_.fill(0.0);
+        why_none_ = "the last lane is too old";
         return {};
     }
     const auto foot = foot_on(*lane_, pose, reached_m_ - kBack_m, reached_m_ + kMaxProgress_m);
+    why_none_ = "the car is off the last lane";
     if (!foot || foot->offset_m > settings_.max_offset_m) return {};
+    why_none_ = "the last lane is at its end";
     if (foot->s_m > reached_m_) reached_m_ = foot->s_m;
     return stretch(*lane_, foot->s_m, lane_->length_m, step_m_);
+}
+
+double PathMemory::steady_trust_m(double trusted_m, double until_m) {
+    for (double& end_m : trust_ends_m_) end_m = std::min(end_m, reached_m_ + until_m);
+    if (reached_m_ + trusted_m > trust_ends_m_.back()) {
+        trust_ends_m_.back() = reached_m_ + trusted_m;
+        std::ranges::sort(trust_ends_m_, std::greater());
+    }
+    return std::max(trusted_m, trust_ends_m_.back() - reached_m_);
 }
 
 void LaneChoice::move_along(const RigidShift& shift) {
@@ -52,18 +67,6 @@ bool LaneChoice::is_spent(const DrivableLane& left) const {
 
 bool LaneChoice::agrees(const DrivableLane& lane, const DrivableLane& left) const {
     return is_spent(left) || jump_m(lane, left, settings_.near_m) <= settings_.jump_m;
-}
-
-const DrivableLane& LaneChoice::reference(const DrivableLane& fresh, const DrivableLane& left,
-                                          const DrivableLane& course) const {
-    if (!agrees(fresh, course) || !agrees(left, course)) return course;
-    const double from_fresh_m = jump_m(fresh, course, settings_.near_m);
-    return jump_m(left, course, settings_.near_m) < from_fresh_m ? left : course;
-}
-
-bool LaneChoice::is_on(const DrivableLane& course, const DrivableLane& left) const {
-    return !is_spent(course) && !left.points.empty() &&
-           jump_m(left, course, settings_.on_course_m) <= settings_.on_course_offset_m;
 }
 
 /// Where the lane runs along the one driven so far, `weight` is added to what supported that one; elsewhere

@@ -5,10 +5,16 @@
 #include "detectors/planner/lap_planner_settings.hpp"
 #include "detectors/planner/rigid_shift.hpp"
 
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace conelane {
+
+/// So many frames have to trust a place before it stays trusted.
+inline constexpr std::size_t kTrustingFrames = 3;
 
 /// The lane that the car drives by, and its remaining part.
 class PathMemory {
@@ -23,6 +29,12 @@ class PathMemory {
     /// The lane from the car on: no points if there is none, it is too old, or the car is off it or at its
     /// end.
     [[nodiscard]] DrivableLane left(const Pose& pose, double time_s);
+    /// How far a lane of this frame is trusted: as far as its detector says, `trusted_m`, or as far as three
+    /// earlier frames said, less what the car has driven since. What earlier frames said ends where this
+    /// frame contradicts it, at `until_m`.
+    [[nodiscard]] double steady_trust_m(double trusted_m, double until_m);
+    /// Why `left` had no points the last time.
+    [[nodiscard]] std::string_view why_none() const { return why_none_; }
     /// Age of the frame that the lane is from.
     [[nodiscard]] double time_s() const { return time_s_; }
 
@@ -33,6 +45,9 @@ class PathMemory {
     std::optional<DrivableLane> lane_;
     double time_s_ = 0.0;
     double reached_m_ = 0.0;  ///< arc length that the car has reached
+    /// The farthest ends of the trust that frames have said, farthest first, along the lane.
+    std::array<double, kTrustingFrames> trust_ends_m_{};
+    std::string_view why_none_;
 };
 
 /// Decides between the lane driven so far and a new one that jumps away from it near the car.
@@ -49,14 +64,6 @@ class LaneChoice {
     /// Whether a lane continues the one driven so far, or too little of that one is left. `left`: the rest of
     /// the lane driven so far; without points there is none.
     [[nodiscard]] bool agrees(const DrivableLane& lane, const DrivableLane& left) const;
-    /// The lane that `fresh` is compared with in later laps: `course`, the one of the lap before, or `left`
-    /// if both are on the course and `left` is nearer to it. A lane that leaves `left` for the edge of what
-    /// agrees with the course then has to be confirmed as in the first lap.
-    [[nodiscard]] const DrivableLane& reference(const DrivableLane& fresh, const DrivableLane& left,
-                                                const DrivableLane& course) const;
-    /// Whether a car at the beginning of `left` is on `course`, the one of the lap before, however far the
-    /// two part ahead. It is not on a course without a rest.
-    [[nodiscard]] bool is_on(const DrivableLane& course, const DrivableLane& left) const;
     /// Whether to drive by `fresh` from now on, which the frame supports with `weight`. `kept_weight`: the
     /// frame's support of the lane driven so far if `fresh` disagrees with it; 0 for no support.
     [[nodiscard]] bool take(const DrivableLane& fresh, const DrivableLane& left, double weight = 1.0,

@@ -29,6 +29,8 @@ constexpr double kJoinBend_m = 2.0;  ///< before its beginning the line turns fr
 constexpr double kExtendOffset_m = 0.5;
 constexpr double kExtendTurn_rad = 0.35;
 constexpr double kFine_m = 0.1;
+constexpr double kCurvatureOver_m = 4.0;
+constexpr double kFarAside_m = 6.0;    ///< nothing farther is beside a point of a lane
 constexpr double kSteadyShare = 0.5;   ///< of the way to the lane driven so far
 constexpr double kSteadyFull_m = 0.5;  ///< apart: up to here all of the share, at kSteadyNone_m nothing
 constexpr double kSteadyNone_m = 0.9;
@@ -38,18 +40,6 @@ constexpr double kSteadySide_m = 1.0;  ///< to a boundary: no nearer
 
 Point direction(double heading_rad) {
     return {std::cos(heading_rad), std::sin(heading_rad)};
-}
-
-DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share) {
-    DrivablePoint point;
-    point.s_m = std::lerp(a.s_m, b.s_m, share);
-    point.position = a.position + share * (b.position - a.position);
-    point.heading_rad = std::remainder(a.heading_rad + share * turn_rad(a.heading_rad, b.heading_rad),
-                                       2.0 * std::numbers::pi);
-    point.curvature_1pm = std::lerp(a.curvature_1pm, b.curvature_1pm, share);
-    point.width_left_m = std::lerp(a.width_left_m, b.width_left_m, share);
-    point.width_right_m = std::lerp(a.width_right_m, b.width_right_m, share);
-    return point;
 }
 
 /// What a lane knows of its boundaries, for a part of it whose arc lengths are larger by `by_m`.
@@ -166,6 +156,18 @@ std::vector<DrivablePoint> leading_to(const DrivablePoint& beginning, const Driv
 
 double turn_rad(double from_rad, double to_rad) {
     return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+}
+
+DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share) {
+    DrivablePoint point;
+    point.s_m = std::lerp(a.s_m, b.s_m, share);
+    point.position = a.position + share * (b.position - a.position);
+    point.heading_rad = std::remainder(a.heading_rad + share * turn_rad(a.heading_rad, b.heading_rad),
+                                       2.0 * std::numbers::pi);
+    point.curvature_1pm = std::lerp(a.curvature_1pm, b.curvature_1pm, share);
+    point.width_left_m = std::lerp(a.width_left_m, b.width_left_m, share);
+    point.width_right_m = std::lerp(a.width_right_m, b.width_right_m, share);
+    return point;
 }
 
 std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m, double to_s_m) {
@@ -286,6 +288,37 @@ DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, doub
     }
     if (points.size() == lane.points.size()) return lane;
     return measured(std::move(points), step_m, lane);
+}
+
+double arc_length_beside(const DrivableLane& lane, const Point& place, double outside_m) {
+    double step_m = 0.0;
+    for (std::size_t i = 0; i < lane.points.size(); ++i) {
+        const DrivablePoint& point = lane.points[i];
+        if (i > 0) step_m = point.s_m - lane.points[i - 1].s_m;
+        if ((place - point.position).squaredNorm() > kFarAside_m * kFarAside_m) continue;
+        const Pose pose = pose_of(point);
+        const double left_m = pose.left_m(place);
+        if (std::abs(pose.ahead_m(place)) > std::max(step_m, 0.5)) continue;
+        const double width_m = left_m > 0.0 ? point.width_left_m : point.width_right_m;
+        if (std::abs(left_m) <= width_m + outside_m) return point.s_m;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+void even_curvatures(DrivableLane& lane) {
+    std::vector<double> turned_rad(lane.points.size(), 0.0);
+    for (std::size_t i = 1; i < turned_rad.size(); ++i) {
+        turned_rad[i] =
+            turned_rad[i - 1] + turn_rad(lane.points[i - 1].heading_rad, lane.points[i].heading_rad);
+    }
+    std::size_t from = 0;
+    std::size_t to = 0;
+    for (DrivablePoint& point : lane.points) {
+        while (lane.points[from].s_m < point.s_m - kCurvatureOver_m / 2.0) ++from;
+        while (to + 1 < turned_rad.size() && lane.points[to].s_m < point.s_m + kCurvatureOver_m / 2.0) ++to;
+        const double over_m = lane.points[to].s_m - lane.points[from].s_m;
+        if (over_m > 0.0) point.curvature_1pm = (turned_rad[to] - turned_rad[from]) / over_m;
+    }
 }
 
 DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, double step_m) {

@@ -14,6 +14,9 @@ namespace conelane {
     return {point.position, point.heading_rad};
 }
 
+/// All of a point but its arc length, curvature and widths linear, on the straight line to another one.
+[[nodiscard]] DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share);
+
 /// The place of a car on a lane: the nearest point whose direction is within 90 degrees of the car's heading.
 struct LaneFoot {
     double s_m = 0.0;
@@ -38,6 +41,13 @@ struct LaneFoot {
 /// ends. `window_m`: arc length of the other one that is searched past each point.
 [[nodiscard]] double common_m(const DrivableLane& lane, const DrivableLane& other, double apart_m,
                               double window_m);
+
+/// Arc length of the first place of a lane beside which a point is, no more than `outside_m` outside the
+/// boundaries, or inside them by at least -outside_m; infinite if there is none.
+[[nodiscard]] double arc_length_beside(const DrivableLane& lane, const Point& place, double outside_m);
+
+/// Sets the curvatures of an open lane to its turn over 4 m: noise of single points is no bend.
+void even_curvatures(DrivableLane& lane);
 
 /// The lane extended back to the car if it begins ahead: along `before`, the lane driven so far, if that
 /// leads to it, else in one bend from the car. Nothing if it is more than 12 m away, or, for a bend, too far

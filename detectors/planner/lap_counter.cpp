@@ -79,6 +79,14 @@ bool LapCounter::crosses(const Pose& line, const Pose& pose) const {
            std::abs(turn_rad(line.yaw_rad, pose.yaw_rad)) <= kWith_rad;
 }
 
+std::optional<double> LapCounter::to_stop_line_m(const DrivableLane& lane) const {
+    const bool is_at_end = finish_ && course_ends_ && !passed_finish_;
+    if (laps_ >= laps_of_run_ || (!is_at_end && (laps_ + 1 < laps_of_run_ || !away_))) return std::nullopt;
+    const auto foot = foot_on(lane, is_at_end ? *finish_ : line_, 0.0, lane.length_m);
+    const bool is_on = foot && foot->s_m > 0.0 && foot->s_m < lane.points.back().s_m;
+    return is_on && foot->offset_m <= settings_.line_half_width_m ? std::optional(foot->s_m) : std::nullopt;
+}
+
 bool LapCounter::nothing_ahead(const Pose& place, const ConeMemory& memory) {
     constexpr double kAhead_m = 15.0;
     constexpr double kAside_m = 8.0;

@@ -27,6 +27,8 @@ class LapCounter {
     [[nodiscard]] int laps() const { return laps_; }
     /// The gate at which the course ends, if it is known.
     [[nodiscard]] std::optional<Pose> end() const { return course_ends_ ? finish_ : std::nullopt; }
+    /// Distance along a lane from the car on to the line that ends the run, if the lane crosses it next.
+    [[nodiscard]] std::optional<double> to_stop_line_m(const DrivableLane& lane) const;
     /// Distance driven since the last counted line [m].
     [[nodiscard]] double since_line_m() const { return since_line_m_; }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -23,6 +24,21 @@ void validate(const PlannerOptions& options) {
 
 constexpr LaneChoiceSettings kChoice;
 constexpr CourseSettings kCourse;
+
+/// Where two lanes from the car on part; infinite if one of them ends before.
+double parted_m(const DrivableLane& lane, const DrivableLane& other) {
+    constexpr double kEnd_m = 1.5;
+    const double shared_m = common_m(lane, other, kChoice.jump_m, kChoice.near_m);
+    return shared_m >= std::min(lane.length_m, other.length_m) - kEnd_m
+               ? std::numeric_limits<double>::infinity()
+               : shared_m;
+}
+
+/// How far a lane that the detector trusts leaves another one uncontested.
+double contested_m(const DrivableLane& seen, const DrivableLane& lane) {
+    const double shared_m = parted_m(seen, lane);
+    return seen.trusted_m.value_or(0.0) > shared_m ? shared_m : std::numeric_limits<double>::infinity();
+}
 
 /// All that a run changes.
 struct Run {
@@ -40,8 +56,7 @@ struct Run {
     std::optional<double> time_s;
     Pose pose;  ///< of that time
     Plan last;
-    bool started = false;     ///< a lane was driven
-    bool off_course = false;  ///< what is seen has outweighed the course of the lap before
+    bool started = false;  ///< a lane was driven
 };
 
 class LapPlanner final : public Planner {
@@ -62,17 +77,18 @@ class LapPlanner final : public Planner {
   private:
     /// What a frame says of the path; nothing: no lane.
     struct Choice {
+        std::optional<DrivableLane> seen;   ///< the detector's lane, to be driven or not
         std::optional<DrivableLane> fresh;  ///< of this frame
-        std::optional<DrivableLane> known;  ///< of the lap before, instead of one of this frame
     };
 
     [[nodiscard]] std::optional<DrivableLane> fresh_lane(const LaneAnswer& answer, const Scene& scene,
                                                          const DrivableLane& left) const;
     [[nodiscard]] Choice chosen_lane(const LaneAnswer& answer, const Scene& scene, const DrivableLane& left);
-    [[nodiscard]] std::optional<DrivableLane> known_lane(const Pose& pose, const DrivableLane& left) const;
-    [[nodiscard]] bool is_worse(const DrivableLane& left, const DrivableLane& known) const;
+    [[nodiscard]] bool follow_course(const Choice& choice, const DrivableLane& left, Plan& plan,
+                                     double& until_m);
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
-    void choose_path(Choice choice, const DrivableLane& left, Plan& plan);
+    void choose_path(const Choice& choice, const DrivableLane& left, Plan& plan, double until_m);
+    void keep_path(Plan& plan);
     void lead_out(Plan& plan) const;
     void finish(Plan& plan) const;
 
@@ -101,50 +117,91 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
         run_.counter.move_along(*shift);
         run_.course.move_along(*shift);
     }
+    run_.course.observe(frame, run_.cones);
     const Scene scene = run_.cones.scene(frame.pose);
     Plan plan;
     DetectionLimits with_candidates = limits;
     with_candidates.keep_candidates = true;
     plan.answer = detector_->detect(scene, with_candidates);
     const DrivableLane left = run_.path.left(frame.pose, frame.time_s);
-    choose_path(chosen_lane(plan.answer, scene, left), left, plan);
+    const Choice choice = chosen_lane(plan.answer, scene, left);
+    double until_m = std::numeric_limits<double>::infinity();
+    if (!follow_course(choice, left, plan, until_m)) choose_path(choice, left, plan, until_m);
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
-    run_.course.record(plan.lane);
+    run_.course.record(plan.lane, run_.cones);
     run_.counter.observe(frame.pose, plan.lane, run_.cones);
     lead_out(plan);
+    plan.stop_line_m = run_.counter.to_stop_line_m(plan.lane);
     plan.lap = std::min(run_.counter.laps(), laps_);
     if (run_.counter.laps() >= laps_) finish(plan);
     run_.last = plan;
     return plan;
 }
 
-/// `left`: the rest of the lane driven so far.
-void LapPlanner::choose_path(Choice choice, const DrivableLane& left, Plan& plan) {
-    auto& [fresh, known] = choice;
+/// The path is the course of the lap before while the cones of this frame confirm it and the frame's own lane
+/// is not trusted farther. Returns false, with a reason, where it is not. `until_m` becomes the place where
+/// the frame contradicts the course, if it does.
+bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, Plan& plan, double& until_m) {
+    if (!run_.course.closed()) return false;
+    const DrivableLane course = run_.course.ahead(run_.pose, kChoice.known_ahead_m);
+    LaneTrust trust = run_.course.trust(course, run_.cones);
+    if (choice.seen && !course.points.empty()) {
+        const double contested = contested_m(*choice.seen, course);
+        if (contested < trust.length_m) trust = {contested, "a trusted lane leaves the course"};
+    }
+    if (trust.length_m > 0.0 && !left.points.empty() && !run_.choice.agrees(course, left))
+        trust = {0.0, "the car is not on the course"};
+    plan.reason = trust.reason;
+    if (trust.length_m <= 0.0 || !run_.course.is_confirmed()) return false;
+    if (!trust.reason.empty()) until_m = trust.length_m;
+    if (choice.fresh && choice.fresh->trusted_m.value_or(0.0) > trust.length_m) return false;
+    // What this frame shows for sure is newer than the course. Where the two do not meet, each counts half.
+    const double step_m = options_.drivable.step_m;
+    DrivableLane shown;
+    if (choice.fresh) shown = stretch(*choice.fresh, 0.0, choice.fresh->trusted_m.value_or(0.0), step_m);
+    DrivableLane lane = extended(shown, course, step_m);
+    if (lane.length_m < course.length_m - kChoice.near_m) lane = steadied(course, shown, step_m);
+    plan.lane = steadied(lane, left, step_m);
+    if (choice.fresh) run_.course.lean_on(*choice.fresh);
+    plan.lane.trusted_m = std::min(run_.path.steady_trust_m(trust.length_m, until_m), plan.lane.length_m);
+    keep_path(plan);
+    return true;
+}
+
+/// The path of this frame.
+void LapPlanner::keep_path(Plan& plan) {
+    run_.path.remember(plan.lane, *run_.time_s);
+    plan.state = PlanState::following;
+    plan.safe_m = *plan.lane.trusted_m;
+    run_.started = true;
+}
+
+/// `left`: the rest of the lane driven so far, which is trusted up to `until_m` at most.
+void LapPlanner::choose_path(const Choice& choice, const DrivableLane& left, Plan& plan, double until_m) {
+    const auto& [seen, fresh] = choice;
     if (fresh) {
         plan.lane = steadied(*fresh, left, options_.drivable.step_m);
+        until_m = std::min(
+            {until_m, left.points.empty() ? 0.0 : parted_m(plan.lane, left), contested_m(*seen, plan.lane)});
+        const double kept_m = run_.path.steady_trust_m(plan.lane.trusted_m.value_or(0.0), until_m);
         // An uncertain lane must not make the planner forget what it knew, because the next frame could then
         // lead anywhere.
-        if (plan.lane.length_m < kChoice.short_m) {
+        if (plan.lane.length_m < std::max(kChoice.short_m, kept_m)) {
             plan.lane = extended(plan.lane, left, options_.drivable.step_m);
         }
-        run_.path.remember(plan.lane, *run_.time_s);
-        plan.state = PlanState::following;
-        run_.started = true;
+        plan.lane.trusted_m = std::min(kept_m, plan.lane.length_m);
+        keep_path(plan);
     } else if (!left.points.empty()) {
-        if (!known) {
-            known = known_lane(run_.pose, left);
-            if (known && !is_worse(left, *known)) known.reset();
-        }
-        if (known) run_.path.remember(*known, run_.path.time_s());
-        plan.lane = known ? *known : left;
+        plan.lane = left;
+        if (seen) until_m = std::min(until_m, contested_m(*seen, plan.lane));
+        plan.lane.trusted_m = plan.safe_m = std::min(plan.lane.trusted_m.value_or(0.0), until_m);
         plan.state = PlanState::bridging;
         plan.age_s = *run_.time_s - run_.path.time_s();
     } else {
         plan.state = run_.started ? PlanState::lost : PlanState::searching;
+        if (run_.started) plan.reason = run_.path.why_none();
     }
-    plan.safe_m = plan.lane.trusted_m.value_or(0.0);
 }
 
 std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, const Scene& scene,
@@ -160,21 +217,14 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
 }
 
 /// The lane of a frame: the detector's answer if it continues the lane driven so far or outweighs it, else
-/// the most probable candidate that continues it; nothing without one. In later laps, the course known from
-/// the lap before replaces the lane driven so far, until it is outweighed, and a candidate that continues it.
+/// the most probable candidate that continues it; nothing without one.
 LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                            const DrivableLane& left) {
-    std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
-    if (!fresh) return {};
-    const DrivableLane course = run_.course.ahead(scene.pose, kChoice.course_ahead_m);
-    if (run_.off_course && run_.choice.agrees(*fresh, course)) run_.off_course = false;
-    const bool is_in_later_lap = !run_.off_course && !left.points.empty() && !course.points.empty();
-    const DrivableLane& before = is_in_later_lap ? run_.choice.reference(*fresh, left, course) : left;
-    const bool by_course = &before == &course;
-    const double weight = answer.confidence.value_or(kChoice.unsure_weight);
+    std::optional<DrivableLane> seen = fresh_lane(answer, scene, left);
+    if (!seen) return {};
     std::optional<DrivableLane> kept;
-    double kept_weight = by_course ? kChoice.course_weight : 0.0;
-    if (answer.enumeration && !run_.choice.agrees(*fresh, before)) {
+    double kept_weight = 0.0;
+    if (answer.enumeration && !run_.choice.agrees(*seen, left)) {
         double best = kChoice.min_kept_weight;
         for (const LaneCandidate& candidate : answer.enumeration->candidates) {
             const double probability = candidate.confidence.value_or(0.0);
@@ -183,45 +233,18 @@ LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene
             other.status = LaneStatus::found;
             other.lane = candidate.lane;
             std::optional<DrivableLane> lane = fresh_lane(other, scene, left);
-            if (!lane || !run_.choice.agrees(*lane, before)) continue;
+            if (!lane || !run_.choice.agrees(*lane, left)) continue;
             // Detectors say how far their answer is trusted. Of a candidate, what it shares with the trusted
             // rest of the lane driven so far is trusted.
             const double shared_m = common_m(*lane, left, kChoice.jump_m, kChoice.near_m);
             lane->trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
             kept = std::move(lane);
-            best = probability;
+            kept_weight = best = probability;
         }
-        if (kept) kept_weight += best;
     }
-    const bool agrees = run_.choice.agrees(*fresh, before);
-    if (!run_.choice.take(*fresh, before, weight, kept_weight)) {
-        // A candidate that agrees with the course near the car may leave it farther on, or end.
-        if (by_course && kept) {
-            if (std::optional<DrivableLane> known = known_lane(scene.pose, left))
-                return {{}, std::move(known)};
-        }
-        return {std::move(kept), {}};
-    }
-    if (by_course && !agrees) run_.off_course = true;
-    return {std::move(fresh), {}};
-}
-
-/// In later laps: the course of the lap before, up to `course_ahead_m`, if the car is on it and nothing has
-/// outweighed it. It has been driven, whereas the far end of a lane is from frames that saw it from afar.
-std::optional<DrivableLane> LapPlanner::known_lane(const Pose& pose, const DrivableLane& left) const {
-    if (run_.off_course) return std::nullopt;
-    DrivableLane course = run_.course.ahead(pose, kChoice.course_ahead_m);
-    if (!run_.choice.is_on(course, left)) return std::nullopt;
-    const double shared_m = common_m(course, left, kChoice.jump_m, kChoice.near_m);
-    course.trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
-    return course;
-}
-
-/// Whether the rest of the lane driven so far is worse than the course of the lap before. It is newer, so it
-/// is kept while it is long enough and runs in the lane of the lap before.
-bool LapPlanner::is_worse(const DrivableLane& left, const DrivableLane& known) const {
-    return left.length_m < kChoice.short_m ||
-           jump_m(left, known, kChoice.near_m) > options_.drivable.default_width_m / 2.0;
+    const double weight = answer.confidence.value_or(kChoice.unsure_weight);
+    if (run_.choice.take(*seen, left, weight, kept_weight)) kept = seen;
+    return {std::move(seen), std::move(kept)};
 }
 
 LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {

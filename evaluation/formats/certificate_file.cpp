@@ -32,33 +32,6 @@ constexpr std::tuple kClaim{Field{"scene", &CertificateClaim::scene},
                             Field{"nearest", &CertificateClaim::nearest},
                             Inlined{&CertificateClaim::parameters}};
 
-}  // namespace
-
-template <>
-inline constexpr std::tuple kFields<CertificateRecord::Clique>{
-    Field{"price", &CertificateRecord::Clique::multiplier},
-    Field{"edges", &CertificateRecord::Clique::edges}};
-template <>
-inline constexpr std::tuple kFields<CertificateRecord> = std::tuple_cat(
-    kClaim, std::tuple{ClaimedBound{}, Field{"heading_price", &CertificateRecord::heading_multiplier},
-                       Field{"cone_prices", &CertificateRecord::cone_multipliers},
-                       Field{"cliques", &CertificateRecord::cliques}});
-
-template <>
-inline constexpr std::tuple kFields<Record::Stage>{Field{"heading", &Record::Stage::heading},
-                                                   Field{"cones", &Record::Stage::cones},
-                                                   Field{"cliques", &Record::Stage::cliques}};
-template <>
-inline constexpr std::tuple kFields<Record::Part>{Field{"far_start", &Record::Part::far_start},
-                                                  Field{"cliques", &Record::Part::cliques},
-                                                  Field{"stages", &Record::Part::stages}};
-template <>
-inline constexpr std::tuple kFields<Record> =
-    std::tuple_cat(kClaim, std::tuple{Field{"edges", &Record::edges}, Field{"objective", &Record::objective},
-                                      ClaimedBound{}, Field{"parts", &Record::parts}});
-
-namespace {
-
 /// Indices of a scene's cones, and the first id that has none.
 class Indices {
   public:
@@ -89,6 +62,29 @@ std::vector<Record::EdgeById> by_id(const Scene& scene, const std::vector<Edge>&
 }
 
 }  // namespace
+
+template <>
+inline constexpr std::tuple kFields<CertificateRecord::Clique>{
+    Field{"price", &CertificateRecord::Clique::multiplier},
+    Field{"edges", &CertificateRecord::Clique::edges}};
+template <>
+inline constexpr std::tuple kFields<CertificateRecord> = std::tuple_cat(
+    kClaim, std::tuple{ClaimedBound{}, Field{"heading_price", &CertificateRecord::heading_multiplier},
+                       Field{"cone_prices", &CertificateRecord::cone_multipliers},
+                       Field{"cliques", &CertificateRecord::cliques}});
+
+template <>
+inline constexpr std::tuple kFields<Record::Stage>{Field{"heading", &Record::Stage::heading},
+                                                   Field{"cones", &Record::Stage::cones},
+                                                   Field{"cliques", &Record::Stage::cliques}};
+template <>
+inline constexpr std::tuple kFields<Record::Part>{Field{"far_start", &Record::Part::far_start},
+                                                  Field{"cliques", &Record::Part::cliques},
+                                                  Field{"stages", &Record::Part::stages}};
+template <>
+inline constexpr std::tuple kFields<Record> =
+    std::tuple_cat(kClaim, std::tuple{Field{"edges", &Record::edges}, Field{"objective", &Record::objective},
+                                      ClaimedBound{}, Field{"parts", &Record::parts}});
 
 SearchCertificateRecord to_search_record(const Scene& scene, const SearchCertificate& certificate) {
     Record record;

@@ -1,7 +1,7 @@
 #include "evaluation/formats/cone_json.hpp"
 
-#include <algorithm>
-#include <array>
+#include "model/position_covariance.hpp"
+
 #include <cmath>
 #include <cstddef>
 
@@ -34,14 +34,6 @@ void ConeColors::read(const JsonNode& json, Cone& cone) {
 
 void ConeColors::put(nlohmann::ordered_json& json, const Cone& cone, const std::string& /*place*/) {
     json["color"] = to_string(cone.color);
-}
-
-std::optional<PositionCovariance> covariance_of(const std::array<double, 4>& matrix) {
-    constexpr double kOff = 1e-6;
-    const auto [xx, xy, yx, yy] = matrix;
-    if (xy == yx) return PositionCovariance{xx, xy, yy};
-    if (!(std::abs(xy - yx) <= kOff * std::max(std::abs(xy), std::abs(yx)))) return std::nullopt;
-    return PositionCovariance{xx, 0.5 * xy + 0.5 * yx, yy};
 }
 
 void ConeUncertainty::read(const JsonNode& json, Cone& cone) {

@@ -3,14 +3,7 @@
 #include "conelane/scene.hpp"
 #include "evaluation/formats/json_records.hpp"
 
-#include <array>
-#include <optional>
-
 namespace conelane {
-
-/// The covariance that a matrix [xx, xy, yx, yy] holds. Nothing where xy and yx differ by more than 1e-6 of
-/// the larger one; else xy is their mean.
-[[nodiscard]] std::optional<PositionCovariance> covariance_of(const std::array<double, 4>& matrix);
 
 /// `color` and `color_probabilities` ([unknown, blue, yellow, orange, big orange]) of a cone, each of which
 /// may be absent. Where only the probabilities are there, the label is the most probable one.

@@ -9,7 +9,6 @@
 #include <charconv>
 #include <set>
 #include <sstream>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>

@@ -12,7 +12,6 @@
 #include <numeric>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

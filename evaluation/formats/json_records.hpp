@@ -173,6 +173,11 @@ class Field {
     Absent absent_;
 };
 
+/// Gives the member of a member, as the `access` of a field.
+template <auto outer, auto inner>
+inline constexpr auto kInside =
+    [](auto& record) -> decltype(auto) { return std::invoke(inner, std::invoke(outer, record)); };
+
 /// The fields of a member among those of the record. A std::optional member is there if `key` is.
 template <typename Access>
 class Inlined {

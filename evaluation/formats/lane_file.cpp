@@ -51,21 +51,11 @@ inline constexpr std::tuple kFields<Optimality>{Field{"objective", &Optimality::
                                                 Field{"optimal", &Optimality::optimal}};
 template <>
 inline constexpr std::tuple kFields<LaneCandidate>{
-    Field{"left", [](auto& candidate) -> auto& {return candidate.lane.left;
-}  // namespace conelane
-}
-, Field{"right", [](auto& candidate) -> auto& {return candidate.lane.right;
-}
-}
-, Field{"closed", [](auto& candidate) -> auto& {return candidate.lane.closed;
-}
-, Absent::if_empty
-}
-, Field{"iteration", &LaneCandidate::iteration, Range::not_negative}, Field {
-    "confidence", &LaneCandidate::confidence, Range::share
-}
-}
-;
+    Field{"left", kInside<&LaneCandidate::lane, &Lane::left>},
+    Field{"right", kInside<&LaneCandidate::lane, &Lane::right>},
+    Field{"closed", kInside<&LaneCandidate::lane, &Lane::closed>, Absent::if_empty},
+    Field{"iteration", &LaneCandidate::iteration, Range::not_negative},
+    Field{"confidence", &LaneCandidate::confidence, Range::share}};
 template <>
 inline constexpr std::tuple kFields<Enumeration>{
     Field{"iterations", &Enumeration::iterations, Range::not_negative},
@@ -142,22 +132,18 @@ inline constexpr std::tuple kFields<LaneAnswer>{
 
 template <>
 inline constexpr std::tuple kFields<LaneRecord>{
-    Field{"scene", &LaneRecord::scene}, Field{"method", &LaneRecord::detector}, AnswerStatus{},
-    AnswerShape{.may_be_absent = false}, Field{"latency_ms", &LaneRecord::latency_ms, Range::not_negative},
-    AnswerPoints{}, Field{"self_timed_ms", &LaneRecord::self_timed_ms, Range::not_negative},
-    Inlined{&LaneRecord::answer}, Inlined{[](auto& record) -> auto& {return record.answer.optimality;
-}
-, "objective"
-}
-, Inlined{[](auto& record) -> auto& {return record.answer.enumeration;
-}
-, "iterations"
-}
-, Field{"nearest", &LaneRecord::nearest}, Field {
-    "checked", &LaneRecord::checked, Absent::if_empty
-}
-}
-;
+    Field{"scene", &LaneRecord::scene},
+    Field{"method", &LaneRecord::detector},
+    AnswerStatus{},
+    AnswerShape{.may_be_absent = false},
+    Field{"latency_ms", &LaneRecord::latency_ms, Range::not_negative},
+    AnswerPoints{},
+    Field{"self_timed_ms", &LaneRecord::self_timed_ms, Range::not_negative},
+    Inlined{&LaneRecord::answer},
+    Inlined{kInside<&LaneRecord::answer, &LaneAnswer::optimality>, "objective"},
+    Inlined{kInside<&LaneRecord::answer, &LaneAnswer::enumeration>, "iterations"},
+    Field{"nearest", &LaneRecord::nearest},
+    Field{"checked", &LaneRecord::checked, Absent::if_empty}};
 
 namespace {
 

@@ -8,7 +8,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace conelane {
@@ -61,13 +60,6 @@ RldParameters rld_parameters_of(const JsonNode& json, const std::filesystem::pat
 RldParameters read_rld_parameters(const std::filesystem::path& file) {
     RldParameters parameters;
     with_json_file(file,
-                   [&](const JsonNode& json) { parameters = rld_parameters_of(json, file.parent_path()); });
-    return parameters;
-}
-
-RldParameters parse_rld_parameters(std::string_view text, const std::filesystem::path& file) {
-    RldParameters parameters;
-    with_json_text(text, file,
                    [&](const JsonNode& json) { parameters = rld_parameters_of(json, file.parent_path()); });
     return parameters;
 }

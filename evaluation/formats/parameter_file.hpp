@@ -14,9 +14,6 @@ namespace conelane {
 /// or the line that is not JSON.
 [[nodiscard]] RldParameters read_rld_parameters(const std::filesystem::path& file);
 
-/// The same from a text; errors name `file`.
-[[nodiscard]] RldParameters parse_rld_parameters(std::string_view text, const std::filesystem::path& file);
-
 class JsonNode;
 /// The same from an object inside a file of that folder.
 [[nodiscard]] RldParameters rld_parameters_of(const JsonNode& json, const std::filesystem::path& folder = {});

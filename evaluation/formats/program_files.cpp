@@ -62,14 +62,28 @@ char mps_sense(const BinaryProgram::RowBounds& row) {
 std::vector<std::vector<std::pair<std::size_t, double>>> entries_by_column(const BinaryProgram& program) {
     std::vector<std::vector<std::pair<std::size_t, double>>> entries(program.columns.size());
     for (std::size_t r = 0; r < program.rows.size(); ++r) {
-        for (auto e = static_cast<std::size_t>(program.row_starts[r]);
-             e < static_cast<std::size_t>(program.row_starts[r + 1]); ++e) {
-            entries[static_cast<std::size_t>(program.entry_columns[e])].emplace_back(r,
-                                                                                     program.entry_values[e]);
-        }
+        program.for_each_entry(
+            r, [&](std::size_t column, double value) { entries[column].emplace_back(r, value); });
     }
     return entries;
 }
+
+/// Terms of one LP row, a few in each line: some readers limit the length of a line.
+class LpTerms {
+  public:
+    explicit LpTerms(std::ostream& out) : out_(out) {}
+    void add(double coefficient, const std::string& column) {
+        if (count_ > 0 && count_ % kTermsInALine == 0) out_ << "\n  ";
+        ++count_;
+        out_ << (coefficient < 0.0 ? " - " : " + ") << number(std::abs(coefficient)) << ' ' << column;
+    }
+    [[nodiscard]] bool empty() const { return count_ == 0; }
+
+  private:
+    static constexpr int kTermsInALine = 8;
+    std::ostream& out_;
+    int count_ = 0;
+};
 
 }  // namespace
 
@@ -116,27 +130,6 @@ void write_mps(std::ostream& out, const BinaryProgram& program, std::string_view
     out << "ENDATA\n";
 }
 
-namespace {
-
-/// Terms of one LP row, a few in each line: some readers limit the length of a line.
-class LpTerms {
-  public:
-    explicit LpTerms(std::ostream& out) : out_(out) {}
-    void add(double coefficient, const std::string& column) {
-        if (count_ > 0 && count_ % kTermsInALine == 0) out_ << "\n  ";
-        ++count_;
-        out_ << (coefficient < 0.0 ? " - " : " + ") << number(std::abs(coefficient)) << ' ' << column;
-    }
-    [[nodiscard]] bool empty() const { return count_ == 0; }
-
-  private:
-    static constexpr int kTermsInALine = 8;
-    std::ostream& out_;
-    int count_ = 0;
-};
-
-}  // namespace
-
 void write_lp(std::ostream& out, const BinaryProgram& program, std::string_view name) {
     const Names names(program);
     out << "\\ " << name << "\nMinimize\n cost:";
@@ -149,11 +142,8 @@ void write_lp(std::ostream& out, const BinaryProgram& program, std::string_view 
                                double side) {
         out << ' ' << names.rows[r] << suffix << ':';
         LpTerms terms(out);
-        for (auto e = static_cast<std::size_t>(program.row_starts[r]);
-             e < static_cast<std::size_t>(program.row_starts[r + 1]); ++e) {
-            terms.add(program.entry_values[e],
-                      names.columns[static_cast<std::size_t>(program.entry_columns[e])]);
-        }
+        program.for_each_entry(
+            r, [&](std::size_t column, double value) { terms.add(value, names.columns[column]); });
         if (terms.empty()) terms.add(0.0, names.columns.front());
         out << ' ' << sense << ' ' << number(side) << '\n';
     };

@@ -404,13 +404,11 @@ std::string fault_of(const SolutionFile& solution, const BinaryProgram& program)
     for (std::size_t r = 0; r < program.rows.size(); ++r) {
         double sum = 0.0;
         double largest = 1.0;
-        for (int e = program.row_starts[r]; e < program.row_starts[r + 1]; ++e) {
-            const auto entry = static_cast<std::size_t>(e);
-            const double term = program.entry_values[entry] *
-                                solution.point[static_cast<std::size_t>(program.entry_columns[entry])];
+        program.for_each_entry(r, [&](std::size_t column, double value) {
+            const double term = value * solution.point[column];
             sum += term;
             largest = std::max(largest, std::abs(term));
-        }
+        });
         const BinaryProgram::RowBounds& row = program.rows[r];
         if (sum < row.lower - kPointTolerance * largest || sum > row.upper + kPointTolerance * largest)
             return fmt::format("row {} of the program is {:g}, outside {:g} to {:g}", to_string(row.label),

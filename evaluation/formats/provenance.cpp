@@ -1,7 +1,6 @@
 #include "evaluation/formats/provenance.hpp"
 
 #include <fstream>
-#include <string>
 #include <thread>
 
 #include <fmt/format.h>

@@ -1,18 +1,20 @@
 #include "evaluation/formats/run_log.hpp"
 
+#include "evaluation/formats/frame_file.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/track_readers.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/world/track.hpp"
 #include "evaluation/world/track_checks.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -24,6 +26,7 @@ namespace {
 
 constexpr double kPathStep_m = 0.5;         ///< a car at rest adds no places
 constexpr double kMaxConeDistance_m = 6.5;  ///< from the path: the width of the widest lane
+constexpr double kSamePass_m = 8.0;         ///< of travel
 constexpr double kMinLap_m = 30.0;          ///< travel before the path may be back at its start
 constexpr double kBackAtStart_m = 3.0;      ///< from the start
 constexpr double kBeyondPath_m = 15.0;      ///< straight extension behind the end of the path
@@ -90,14 +93,15 @@ struct PassedCone {
     double off_m;
 };
 
-/// The place where the car passes a cone on the side of the cone's color, nearest to the path. Nothing if the
-/// cone is too far away, behind the start, or of unknown color.
-std::optional<PassedCone> passed(const Track& run, std::size_t cone, std::span<const Segment> path,
-                                 bool closed) {
+/// The places where the car passes a cone, each the nearest to it for kSamePass_m; with `by_color` on the
+/// side of the cone's color. None if the cone is too far away, behind the start or, with `by_color`, of
+/// unknown color.
+std::vector<PassedCone> passes_of(const Track& run, std::size_t cone, std::span<const Segment> path,
+                                  bool closed, bool by_color) {
     const ConeColor color = run.cones[cone].color;
-    if (color == ConeColor::unknown) return std::nullopt;
+    if (by_color && color == ConeColor::unknown) return {};
     const Point& position = run.cones[cone].position;
-    std::optional<PassedCone> nearest;
+    std::vector<PassedCone> passes;
     double before_m = 0.0;
     for (std::size_t i = 0; i < path.size(); ++i) {
         const Point along = path[i].to - path[i].from;
@@ -108,33 +112,108 @@ std::optional<PassedCone> passed(const Track& run, std::size_t cone, std::span<c
         const bool beyond_ends =
             !closed && ((i == 0 && ahead_m < 0.0) || (i + 1 == path.size() && ahead_m > length_m));
         const double on_segment_m = std::clamp(ahead_m, 0.0, length_m);
-        const double off_m = (off - on_segment_m / length_m * along).norm();
-        const bool own_side = is_orange(color) || left == (color == ConeColor::blue);
-        if (own_side && !beyond_ends && off_m <= kMaxConeDistance_m && (!nearest || off_m < nearest->off_m)) {
-            nearest = {cone, before_m + on_segment_m, left, off_m};
-        }
+        const PassedCone here{cone, before_m + on_segment_m, left,
+                              (off - on_segment_m / length_m * along).norm()};
         before_m += length_m;
+        const bool own_side = !by_color || is_orange(color) || left == (color == ConeColor::blue);
+        if (!own_side || beyond_ends || here.off_m > kMaxConeDistance_m) continue;
+        if (passes.empty() || here.along_m - passes.back().along_m > kSamePass_m) {
+            passes.push_back(here);
+        } else if (here.off_m < passes.back().off_m) {
+            passes.back() = here;
+        }
     }
-    return nearest;
+    return passes;
 }
 
-/// Sets `left`, `right` and `closed` of a run by the colored cones of its last map along the driven path. If
-/// they do not bound a lane, it returns false and the track stays unchanged.
-bool set_boundaries_along(std::span<const Point> path, Track& run) {
+constexpr std::size_t kConfirmingFrames = 5;  ///< in which a cone of a boundary without colors is seen
+constexpr double kNextToPath_m = 0.8;         ///< the car would hit a cone that is nearer
+
+/// The cones of one side, in the order in which the car passes them, that stay most evenly beside the path: a
+/// shortest way from its start to its end. A step costs kChange of the square of how much the distance to the
+/// path changes; kGap of the square of its length, so that no cone of the boundary is left out; and kAside of
+/// the square of the distance for each metre, so that nearer cones are preferred to those of another lane.
+std::vector<PassedCone> evenly_beside(const std::vector<PassedCone>& cones, double length_m) {
+    constexpr double kChange = 2.0;
+    constexpr double kGap = 0.15;
+    constexpr double kAside = 0.05;
+    std::vector<double> cost(cones.size());
+    std::vector<std::size_t> before(cones.size());
+    std::size_t last = cones.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < cones.size(); ++i) {
+        const double aside = kAside * cones[i].off_m * cones[i].off_m;
+        const auto way_cost = [&](double gap_m) { return (kGap * gap_m + aside) * gap_m; };
+        cost[i] = way_cost(cones[i].along_m);
+        before[i] = i;
+        for (std::size_t j = 0; j < i; ++j) {
+            const double change_m = cones[i].off_m - cones[j].off_m;
+            const double whole =
+                cost[j] + kChange * change_m * change_m + way_cost(cones[i].along_m - cones[j].along_m);
+            if (whole < cost[i]) cost[i] = whole, before[i] = j;
+        }
+        const double whole = cost[i] + way_cost(length_m - cones[i].along_m);
+        if (whole < least) least = whole, last = i;
+    }
+    std::vector<PassedCone> chain;
+    for (std::size_t i = last; i < cones.size(); i = before[i]) {
+        chain.push_back(cones[i]);
+        if (before[i] == i) break;
+    }
+    std::ranges::reverse(chain);
+    return chain;
+}
+
+/// The cones that the car passes, in that order: colored ones of the last map, else those of either side
+/// among what enough frames have seen.
+std::vector<PassedCone> cones_beside(const Track& run, std::span<const Segment> driven, bool closed,
+                                     bool by_color) {
+    std::vector<std::size_t> seen(run.cones.size(), 0);
+    for (const RunFrame& frame : run.frames) {
+        for (const MapPlace& place : frame.map) ++seen[place.cone];
+    }
+    std::vector<std::size_t> candidates;
+    if (by_color) {
+        for (const MapPlace& place : run.frames.back().map) candidates.push_back(place.cone);
+    } else {
+        for (std::size_t cone = 0; cone < seen.size(); ++cone) {
+            if (seen[cone] >= kConfirmingFrames) candidates.push_back(cone);
+        }
+    }
+    std::vector<PassedCone> all;
+    for (const std::size_t candidate : candidates) {
+        std::vector<PassedCone> passes = passes_of(run, candidate, driven, closed, by_color);
+        const auto nearest = std::ranges::min_element(passes, {}, &PassedCone::off_m);
+        if (nearest == passes.end()) continue;
+        if (by_color)
+            all.push_back(*nearest);
+        else if (nearest->off_m >= kNextToPath_m)
+            all.insert(all.end(), passes.begin(), passes.end());  // lanes may lie side by side
+    }
+    std::ranges::sort(all, {}, [](const PassedCone& cone) { return std::pair(cone.along_m, cone.cone); });
+    return all;
+}
+
+/// Sets `left`, `right` and `closed` of a run by cones along the driven path: the colored ones of its last
+/// map, or whatever stays evenly beside the path. If they do not bound a lane, it returns false and the track
+/// stays unchanged.
+bool set_boundaries_along(std::span<const Point> path, Track& run, bool by_color) {
     const DrivenLap lap = first_lap(path);
     if (lap.path.size() < 2) return false;
     const std::vector<Segment> driven = segments(lap.path, lap.closed);
     if (any_cross(driven, driven)) return false;
 
-    std::vector<PassedCone> all;
-    for (const MapPlace& place : run.frames.back().map) {
-        if (const auto cone = passed(run, place.cone, driven, lap.closed)) all.push_back(*cone);
-    }
-    std::ranges::sort(all, {}, [](const PassedCone& cone) { return std::pair(cone.along_m, cone.cone); });
+    const std::vector<PassedCone> all = cones_beside(run, driven, lap.closed, by_color);
     Track bounded;
     bounded.cones = run.cones;
     bounded.closed = lap.closed;
-    for (const PassedCone& cone : all) (cone.left ? bounded.left : bounded.right).push_back(cone.cone);
+    for (const bool is_left : {true, false}) {
+        std::vector<PassedCone> side;
+        std::ranges::copy_if(all, std::back_inserter(side),
+                             [&](const PassedCone& cone) { return cone.left == is_left; });
+        if (!by_color) side = evenly_beside(side, polyline_length_m(lap.path, lap.closed));
+        for (const PassedCone& cone : side) (is_left ? bounded.left : bounded.right).push_back(cone.cone);
+    }
     const std::size_t fewest = lap.closed ? kMinConesOfALap : 2;
     if (bounded.left.size() < fewest || bounded.right.size() < fewest) return false;
     const TrackBoundaries lines = boundaries(bounded);
@@ -217,6 +296,21 @@ std::vector<MapPlace> recognise(const std::vector<Cone>& map, std::vector<Cone>&
     return places;
 }
 
+void add_frame(Track& run, const Pose& pose, const std::vector<Cone>& map) {
+    RunFrame frame{pose, 0.0, recognise(map, run.cones)};
+    if (!run.frames.empty()) {
+        const RunFrame& before = run.frames.back();
+        frame.travelled_m = before.travelled_m + (pose.position - before.pose.position).norm();
+    }
+    run.frames.push_back(std::move(frame));
+}
+
+std::vector<Point> path_of(const Track& run) {
+    std::vector<Point> path;
+    for (const RunFrame& frame : run.frames) path.push_back(frame.pose.position);
+    return path;
+}
+
 /// Whether the car hits a cone of the map between two places.
 bool runs_over_a_cone(const Track& run, const RunFrame& map, const Segment& way) {
     return std::ranges::any_of(map.map, [&](const MapPlace& place) {
@@ -239,7 +333,7 @@ void set_driven_path(Track& run) {
                         run.frames[kept].travelled_m, run.frames.size() - kept));
     }
     run.frames.resize(kept);
-    for (const RunFrame& frame : run.frames) run.driven.push_back(frame.pose.position);
+    run.driven = path_of(run);
 }
 
 }  // namespace
@@ -253,12 +347,8 @@ Track read_run_log(const std::filesystem::path& file) {
         if (size == 0) list.fail("holds no frame");
         for (std::size_t i = 0; i < size; ++i) {
             const JsonNode frame = list.element(i);
-            RunFrame read{read_pose(frame), 0.0, recognise(read_map(frame.member("slam_cones")), run.cones)};
-            if (i > 0) {
-                const RunFrame& before = run.frames.back();
-                read.travelled_m = before.travelled_m + (read.pose.position - before.pose.position).norm();
-            }
-            run.frames.push_back(std::move(read));
+            const Pose pose = read_pose(frame);
+            add_frame(run, pose, read_map(frame.member("slam_cones")));
         }
     });
     if (run.cones.empty()) throw InputError(file, 0, "slam_cones", "no frame has a cone");
@@ -266,15 +356,45 @@ Track read_run_log(const std::filesystem::path& file) {
     const auto colored = [&](ConeColor color) {
         return std::ranges::count(run.cones, color, &Cone::color) >= 2;
     };
-    std::vector<Point> path;
-    for (const RunFrame& frame : run.frames) path.push_back(frame.pose.position);
     if (colored(ConeColor::blue) && colored(ConeColor::yellow)) {
-        if (set_boundaries_along(path, run)) return without_doubled_cones(std::move(run));
+        if (set_boundaries_along(path_of(run), run, true)) return without_doubled_cones(std::move(run));
         run.warnings.emplace_back(
             "its coloured cones bound no lane along the driven path; the path alone counts");
     }
     set_driven_path(run);
     return run;
+}
+
+Track read_driven_run(const std::filesystem::path& file) {
+    Track run;
+    const std::string name = file.filename().string();
+    run.name = "run_" + name.substr(0, name.find('.'));
+    for (const FrameLine& line : read_frames(file, 0.1)) {
+        if (line.reset && !run.frames.empty()) break;  // what follows is another run
+        if (!line.frame) continue;
+        std::vector<Point> places{line.frame->pose.position};
+        for (const Cone& cone : line.frame->cones) places.push_back(cone.position);
+        for (const Point& place : places) {
+            for (const double coordinate_m : {place.x(), place.y()}) {
+                if (const std::string fault = coordinate_fault(coordinate_m); !fault.empty())
+                    throw InputError(file, line.number, "", "a coordinate " + fault);
+            }
+        }
+        add_frame(run, line.frame->pose, line.frame->cones);
+    }
+    std::vector<Point> sums(run.cones.size(), Point(0.0, 0.0));
+    std::vector<double> counts(run.cones.size(), 0.0);
+    for (const RunFrame& frame : run.frames) {
+        for (const MapPlace& place : frame.map) {
+            sums[place.cone] += place.position;
+            ++counts[place.cone];
+        }
+    }
+    for (std::size_t cone = 0; cone < sums.size(); ++cone)
+        run.cones[cone].position = sums[cone] / counts[cone];
+    if (!set_boundaries_along(path_of(run), run, false))
+        throw InputError(file, 0, "", "its cones bound no lane along the driven path");
+    return without_doubled_cones(std::move(run));
 }
 
 Frame read_run_frame(const JsonNode& json) {
@@ -289,5 +409,11 @@ constexpr TrackFormat kRunTracks{
     .reads = "a run of ft-fsd, JSON: a scene is the map that the car had in one frame",
     .ending = ".json",
     .read = read_run_log};
+constexpr TrackFormat kDrivenRuns{
+    .word = "run",
+    .what = "FILE",
+    .reads = "a run of your car, frames, labelled by the path that it drove; a scene is a frame",
+    .ending = ".frames.jsonl",
+    .read = read_driven_run};
 
 }  // namespace conelane

@@ -84,17 +84,16 @@ struct Sighting {
 
 template <>
 inline constexpr std::tuple kFields<AnnotatedScene>{
-    Field{"id", [](auto& annotated) -> auto& {return annotated.scene.id;
-}  // namespace conelane
-, Absent::when_read
-}
-, Sighting{}, GroundTruth{}, Field{"track", &AnnotatedScene::track, Absent::if_empty},
+    Field{"id", kInside<&AnnotatedScene::scene, &Scene::id>, Absent::when_read},
+    Sighting{},
+    GroundTruth{},
+    Field{"track", &AnnotatedScene::track, Absent::if_empty},
     Field{"false_positive_rate", &AnnotatedScene::false_positive_rate, Range::share},
-    Field{"range", &AnnotatedScene::range_m, Range::not_negative}, Field{"seed", &AnnotatedScene::seed},
+    Field{"range", &AnnotatedScene::range_m, Range::not_negative},
+    Field{"seed", &AnnotatedScene::seed},
     Field{"condition", &AnnotatedScene::condition, Absent::if_empty},
-    Field{"travelled", &AnnotatedScene::travelled_m, Range::not_negative}, Missed {}
-}
-;
+    Field{"travelled", &AnnotatedScene::travelled_m, Range::not_negative},
+    Missed{}};
 
 template <>
 inline constexpr std::tuple kFields<TrackBoundaries>{

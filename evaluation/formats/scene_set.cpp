@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <iterator>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

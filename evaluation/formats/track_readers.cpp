@@ -5,7 +5,6 @@
 #include "evaluation/input_error.hpp"
 #include "evaluation/world/track_checks.hpp"
 
-#include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>

@@ -35,5 +35,6 @@ namespace conelane {
 extern const TrackFormat kPacsimTracks;
 extern const TrackFormat kEufsTracks;
 extern const TrackFormat kRunTracks;
+extern const TrackFormat kDrivenRuns;
 
 }  // namespace conelane

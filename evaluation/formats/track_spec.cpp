@@ -9,11 +9,9 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <set>
-#include <string_view>
 
 #include <fmt/core.h>
 
@@ -112,7 +110,7 @@ std::vector<Track> of_files(const std::string& spec, const fs::path& where, cons
     if (!fs::is_directory(where)) return {format.read(where)};
     std::set<fs::path> files;
     for (const fs::directory_entry& entry : fs::directory_iterator(where)) {
-        if (entry.path().extension() == format.ending) files.insert(entry.path());
+        if (entry.path().string().ends_with(format.ending)) files.insert(entry.path());
     }
     if (files.empty()) fail(spec, fmt::format("{} holds no {} file", where.string(), format.ending));
     std::vector<Track> tracks;
@@ -143,8 +141,8 @@ std::string listed(std::string_view last, const std::function<std::string(const 
 }  // namespace
 
 std::span<const TrackFormat* const> track_formats() {
-    static constexpr std::array kAll{&kGeneratedTracks, &kFsdTracks, &kPacsimTracks, &kEufsTracks,
-                                     &kRunTracks};
+    static constexpr std::array kAll{&kGeneratedTracks, &kFsdTracks, &kPacsimTracks,
+                                     &kEufsTracks,      &kRunTracks, &kDrivenRuns};
     return kAll;
 }
 

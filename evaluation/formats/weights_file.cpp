@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 
 #include <charconv>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/learned_costs.hpp"
-#include "graph_search/front/front_weights_reader.hpp"
+#include "graph_search/front/front_weights.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 
 #include <string>

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <csignal>
 #include <ctime>
-#include <string>
 #include <system_error>
 #include <thread>
 
@@ -107,6 +106,21 @@ pid_t start_shell(const std::string& command, int input, int output, int errors)
     return child;
 }
 
+/// Appends the available bytes; closes the descriptor at its end.
+void read_available(int& descriptor, std::string& text, std::size_t at_most) {
+    std::array<char, 1U << 16U> block;
+    while (descriptor >= 0 && text.size() <= at_most) {
+        const ssize_t count = ::read(descriptor, block.data(), block.size());
+        if (count > 0) {
+            text.append(block.data(), static_cast<std::size_t>(count));
+        } else if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+            return;
+        } else if (count == 0 || errno != EINTR) {
+            close_if_open(descriptor);
+        }
+    }
+}
+
 }  // namespace
 
 ChildProcess::ChildProcess(const std::string& command) {
@@ -145,25 +159,6 @@ void ChildProcess::write_pending() {
         }
     }
 }
-
-namespace {
-
-/// Appends the available bytes; closes the descriptor at its end.
-void read_available(int& descriptor, std::string& text, std::size_t at_most) {
-    std::array<char, 1U << 16U> block;
-    while (descriptor >= 0 && text.size() <= at_most) {
-        const ssize_t count = ::read(descriptor, block.data(), block.size());
-        if (count > 0) {
-            text.append(block.data(), static_cast<std::size_t>(count));
-        } else if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
-            return;
-        } else if (count == 0 || errno != EINTR) {
-            close_if_open(descriptor);
-        }
-    }
-}
-
-}  // namespace
 
 void ChildProcess::read_output() {
     read_available(output_, received_, kMaxLine);
@@ -270,19 +265,12 @@ std::string ChildProcess::last_words() const {
 }
 
 std::string fault_of(ChildProcess::Outcome outcome, double limit_ms) {
-    switch (outcome) {
-        case ChildProcess::Outcome::late:
-            return fmt::format("no answer within {:.0f} ms", limit_ms);
-        case ChildProcess::Outcome::too_long:
-            return fmt::format("more than {} bytes without a newline", ChildProcess::kMaxLine);
-        case ChildProcess::Outcome::closed_input:
-            return "the program does not read its input";
-        case ChildProcess::Outcome::closed_output:
-            return "the program ended";
-        case ChildProcess::Outcome::line:
-            break;
-    }
-    return "";
+    using Outcome = ChildProcess::Outcome;
+    if (outcome == Outcome::late) return fmt::format("no answer within {:.0f} ms", limit_ms);
+    if (outcome == Outcome::too_long)
+        return fmt::format("more than {} bytes without a newline", ChildProcess::kMaxLine);
+    if (outcome == Outcome::closed_input) return "the program does not read its input";
+    return outcome == Outcome::closed_output ? "the program ended" : "";
 }
 
 }  // namespace conelane

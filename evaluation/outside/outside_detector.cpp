@@ -11,7 +11,6 @@
 #include <iterator>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

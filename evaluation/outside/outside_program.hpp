@@ -4,7 +4,6 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/outside/child_process.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>

@@ -4,7 +4,6 @@
 #include "model/lane_graph_reference.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 

@@ -51,14 +51,12 @@ ExactProgramReport recompute_exactly(const BinaryProgram& program, std::span<con
     for (std::size_t r = 0; r < program.rows.size(); ++r) {
         Rational activity = 0;
         double rounded = 0.0;
-        for (auto e = static_cast<std::size_t>(program.row_starts[r]);
-             e < static_cast<std::size_t>(program.row_starts[r + 1]); ++e) {
-            const double coordinate = point[static_cast<std::size_t>(program.entry_columns[e])];
-            if (coordinate == 0.0) continue;
-            activity += Rational(program.entry_values[e]) * Rational(coordinate);
-            rounded += program.entry_values[e] * coordinate;
+        program.for_each_entry(r, [&](std::size_t column, double value) {
+            if (point[column] == 0.0) return;
+            activity += Rational(value) * Rational(point[column]);
+            rounded += value * point[column];
             ++report.terms;
-        }
+        });
         report.row_rounding = std::max(report.row_rounding, exact_difference(activity, rounded));
         const BinaryProgram::RowBounds& row = program.rows[r];
         note_violation(report, outside(activity, row.lower, row.upper), row.label);

@@ -4,13 +4,14 @@
 #include "model/deadline.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
+
+#include <boost/dynamic_bitset.hpp>
 
 namespace conelane {
 namespace {
@@ -27,7 +28,7 @@ RldParameters without_costs(RldParameters parameters) {
     return parameters;
 }
 
-using EdgeSet = std::vector<std::uint64_t>;
+using EdgeSet = boost::dynamic_bitset<>;
 
 class LaneGraphSearch {
   public:
@@ -37,7 +38,7 @@ class LaneGraphSearch {
     LaneGraphSearchResult run() {
         if (!find_edges()) return {};
         used_.assign(scene_.cones.size(), false);
-        possible_.assign(1, EdgeSet((edges_.size() + 63) / 64, ~std::uint64_t{0}));
+        possible_.assign(1, ~EdgeSet(edges_.size()));
         for (std::size_t start = 0; start < scene_.cones.size() && !ended(); ++start) {
             if (!near_[start]) continue;
             first_start_ = start;
@@ -93,40 +94,30 @@ class LaneGraphSearch {
                 along_heading_.push_back(report.along_heading > 0);
             }
         }
-        const std::size_t words = (edges_.size() + 63) / 64;
-        along_set_.assign(words, 0);
-        compatible_.assign(edges_.size(), EdgeSet(words, 0));
+        compatible_.assign(edges_.size(), EdgeSet(edges_.size()));
         for (std::size_t e = 0; e < edges_.size(); ++e) {
-            if (along_heading_[e]) insert(along_set_, e);
             for (std::size_t f = e + 1; f < edges_.size(); ++f) {
                 count_step();
                 if (stopped_) return false;
                 if (ask({edges_[e], edges_[f]}).is_final) continue;
-                insert(compatible_[e], f);
-                insert(compatible_[f], e);
+                compatible_[e].set(f);
+                compatible_[f].set(e);
             }
         }
         return true;
-    }
-
-    static void insert(EdgeSet& set, std::size_t edge) { set[edge / 64] |= std::uint64_t{1} << (edge % 64); }
-    static bool contains(const EdgeSet& set, std::size_t edge) {
-        return ((set[edge / 64] >> (edge % 64)) & 1U) != 0;
     }
 
     /// Adds the edge to the graph. False if two edges along the heading are no longer possible.
     bool choose(std::size_t edge) {
         chosen_.push_back(edge);
         if (along_heading_[edge]) ++along_chosen_;
-        if (possible_.size() == chosen_.size()) possible_.emplace_back(along_set_.size());
-        const EdgeSet& before = possible_[chosen_.size() - 1];
+        if (possible_.size() == chosen_.size()) possible_.emplace_back();
         EdgeSet& after = possible_[chosen_.size()];
-        std::size_t along = along_chosen_;
-        for (std::size_t word = 0; word < after.size(); ++word) {
-            after[word] = before[word] & compatible_[edge][word];
-            along += static_cast<std::size_t>(std::popcount(after[word] & along_set_[word]));
-        }
-        return along >= 2;
+        after = possible_[chosen_.size() - 1];
+        after &= compatible_[edge];
+        along_ = after;
+        along_ &= along_heading_;
+        return along_chosen_ + along_.count() >= 2;
     }
     void take_back() {
         if (along_heading_[chosen_.back()]) --along_chosen_;
@@ -138,7 +129,7 @@ class LaneGraphSearch {
         for (const std::size_t edge : edges_at_[last]) {
             if (ended()) return;
             const std::size_t next = edges_[edge].i == last ? edges_[edge].j : edges_[edge].i;
-            if (used_[next] || !contains(possible_[chosen_.size()], edge)) continue;
+            if (used_[next] || !possible_[chosen_.size()][edge]) continue;
             count_step();
             if (choose(edge)) {
                 used_[next] = true;
@@ -187,13 +178,13 @@ class LaneGraphSearch {
     std::vector<bool> far_;
     std::vector<Edge> edges_;                         ///< that may be part of a lane graph
     std::vector<std::vector<std::size_t>> edges_at_;  ///< by cone
-    std::vector<bool> along_heading_;                 ///< by edge
-    EdgeSet along_set_;                               ///< the same
-    std::vector<EdgeSet> compatible_;                 ///< by edge: those that may be in one graph with it
+    EdgeSet along_heading_;
+    std::vector<EdgeSet> compatible_;  ///< by edge: those that may be in one graph with it
 
     std::vector<bool> used_;  ///< by cone
     std::vector<std::size_t> chosen_;
     std::vector<EdgeSet> possible_;  ///< after each number of chosen edges: compatible with all of them
+    EdgeSet along_;                  ///< of the last of these, those along the heading
     std::size_t along_chosen_ = 0;
     std::size_t first_start_ = 0;
     std::size_t first_end_ = 0;

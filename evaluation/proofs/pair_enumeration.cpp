@@ -10,11 +10,6 @@ namespace {
 
 constexpr std::size_t kNoArc = std::numeric_limits<std::size_t>::max();
 
-/// Set union into the first set.
-void add(std::vector<std::uint64_t>& mine, const std::vector<std::uint64_t>& theirs) {
-    for (std::size_t w = 0; w < mine.size(); ++w) mine[w] |= theirs[w];
-}
-
 }  // namespace
 
 PairEnumeration::PairEnumeration(const ExactScene& scene, const LegKinds& kinds, const WalkGraph& graph,
@@ -45,17 +40,11 @@ PairEnumeration::Outcome PairEnumeration::run(std::int64_t& steps_left) {
 /// What an arc excludes for all later arcs of both legs: its edge, the edges incompatible with it, and its
 /// cones.
 void PairEnumeration::find_taken() {
-    const std::size_t edges = scene_.edges.size();
-    words_ = (edges + scene_.end_cost.size() + 63) / 64;
-    for (const std::size_t arc : graph_.arc) {
-        Set& taken = taken_by_.emplace_back(words_, 0);
-        const auto insert = [&](std::size_t bit) { taken[bit / 64] |= std::uint64_t{1} << (bit % 64); };
-        insert(arc / 2);
-        insert(edges + scene_.tail(arc));
-        insert(edges + scene_.head(arc));
-        const boost::dynamic_bitset<>& excluded = scene_.excluded[arc / 2];
-        for (auto e = excluded.find_first(); e != boost::dynamic_bitset<>::npos; e = excluded.find_next(e))
-            insert(e);
+    bits_ = scene_.edges.size() + scene_.end_cost.size();
+    for (std::size_t place = 0; place < graph_.arc.size(); ++place) {
+        Set& taken = taken_by_.emplace_back(scene_.excluded[edge_bit(place)]);
+        taken.resize(bits_);
+        taken.set(edge_bit(place)).set(tail_bit(place)).set(head_bit(place));
     }
 }
 
@@ -65,15 +54,23 @@ std::vector<PairEnumeration::Frontier> PairEnumeration::first_frontiers() const 
     for (std::size_t a = 0; a < graph_.arc.size(); ++a) {
         if (!bounds_.start(0, a)) continue;
         for (std::size_t b = kinds_.count() == 1 ? a + 1 : 0; b < graph_.arc.size(); ++b) {
-            const std::size_t tail = scene_.tail(graph_.arc[b]);
-            if (a == b || !bounds_.start(second, b) || !fits(taken_by_[a], b) ||
-                contains(taken_by_[a], scene_.edges.size() + tail)) {
+            if (a == b || !bounds_.start(second, b) || !fits(taken_by_[a], b) || taken_by_[a][tail_bit(b)])
                 continue;
-            }
             frontiers.push_back(a < b ? Frontier{a, b, 0, false} : Frontier{b, a, second, false});
         }
     }
     return frontiers;
+}
+
+/// Places of the frontiers with which pairs begin.
+std::vector<std::size_t> PairEnumeration::first_places() const {
+    std::vector<std::size_t> places;
+    for (const Frontier& frontier : first_frontiers()) {
+        const auto at = std::ranges::lower_bound(frontiers_, frontier);
+        if (at != frontiers_.end() && *at == frontier)
+            places.push_back(static_cast<std::size_t>(at - frontiers_.begin()));
+    }
+    return places;
 }
 
 Exact PairEnumeration::start_cost(const Frontier& frontier) const {
@@ -174,11 +171,7 @@ void PairEnumeration::find_onward() {
 
 void PairEnumeration::find_forward() {
     forward_.assign(frontiers_.size(), std::nullopt);
-    for (const Frontier& frontier : first_frontiers()) {
-        const auto at = std::ranges::lower_bound(frontiers_, frontier);
-        if (at == frontiers_.end() || *at != frontier) continue;
-        forward_[static_cast<std::size_t>(at - frontiers_.begin())] = start_cost(frontier);
-    }
+    for (const std::size_t f : first_places()) forward_[f] = start_cost(frontiers_[f]);
     for (bool shorter = true; shorter;) {
         shorter = false;
         for (std::size_t f = 0; f < frontiers_.size(); ++f) {
@@ -226,29 +219,20 @@ void PairEnumeration::drop_frontiers() {
 
 /// Drops steps by an arc that every walk up to their frontier excludes.
 void PairEnumeration::drop_taken_by_all() {
-    std::vector<Set> by_all(frontiers_.size(), Set(words_, ~std::uint64_t{0}));
+    std::vector<Set> by_all(frontiers_.size(), ~Set(bits_));
     const auto narrow = [&](std::size_t f, const Set& set) {
-        bool changed = false;
-        for (std::size_t w = 0; w < words_; ++w) {
-            const std::uint64_t both = by_all[f][w] & set[w];
-            changed = changed || both != by_all[f][w];
-            by_all[f][w] = both;
-        }
+        const bool changed = !by_all[f].is_subset_of(set);
+        by_all[f] &= set;
         return changed;
     };
-    for (const Frontier& frontier : first_frontiers()) {
-        const auto at = std::ranges::lower_bound(frontiers_, frontier);
-        if (at == frontiers_.end() || *at != frontier) continue;
-        Set taken = taken_by_[frontier.moving];
-        add(taken, taken_by_[frontier.waiting]);
-        narrow(static_cast<std::size_t>(at - frontiers_.begin()), taken);
-    }
+    for (const std::size_t f : first_places())
+        narrow(f, taken_by_[frontiers_[f].moving] | taken_by_[frontiers_[f].waiting]);
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t f = 0; f < frontiers_.size(); ++f) {
             for (const Step& step : steps_[f]) {
                 Set taken = by_all[f];
-                if (step.arc != kNoArc) add(taken, taken_by_[step.arc]);
+                if (step.arc != kNoArc) taken |= taken_by_[step.arc];
                 changed = narrow(step.to, taken) || changed;
             }
         }
@@ -260,17 +244,14 @@ void PairEnumeration::drop_taken_by_all() {
 }
 
 void PairEnumeration::find_wanted() {
-    wanted_.assign(frontiers_.size(), Set(words_, 0));
-    const auto insert = [](Set& set, std::size_t bit) { set[bit / 64] |= std::uint64_t{1} << (bit % 64); };
+    wanted_.assign(frontiers_.size(), Set(bits_));
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t f = frontiers_.size(); f-- > 0;) {
             Set wanted = wanted_[f];
             for (const Step& step : steps_[f]) {
-                add(wanted, wanted_[step.to]);
-                if (step.arc == kNoArc) continue;
-                insert(wanted, edge_bit(step.arc));
-                insert(wanted, head_bit(step.arc));
+                wanted |= wanted_[step.to];
+                if (step.arc != kNoArc) wanted.set(edge_bit(step.arc)).set(head_bit(step.arc));
             }
             changed = changed || wanted != wanted_[f];
             wanted_[f] = std::move(wanted);
@@ -281,23 +262,21 @@ void PairEnumeration::find_wanted() {
 PairEnumeration::Label PairEnumeration::extended(const Label& label, const Step& step) const {
     Label on{label.cost + step.cost, label.reduced + step.reduced, label.along_heading, label.taken};
     if (step.arc == kNoArc) return on;
-    add(on.taken, taken_by_[step.arc]);
+    on.taken |= taken_by_[step.arc];
     if (scene_.along_heading[edge_bit(step.arc)]) on.along_heading = std::min(2, on.along_heading + 1);
     return on;
 }
 
 PairEnumeration::Outcome PairEnumeration::enumerate(std::int64_t& steps_left) {
     waiting_.assign(frontiers_.size(), {});
-    for (const Frontier& frontier : first_frontiers()) {
-        const auto at = std::ranges::lower_bound(frontiers_, frontier);
-        if (at == frontiers_.end() || *at != frontier) continue;
-        Label label{0, start_cost(frontier), 0, Set(words_, 0)};
+    for (const std::size_t f : first_places()) {
+        const Frontier& frontier = frontiers_[f];
+        Label label{0, start_cost(frontier), 0, Set(bits_)};
         for (const std::size_t arc : {frontier.moving, frontier.waiting}) {
             const Exact cost =
                 scene_.end_cost[scene_.tail(graph_.arc[arc])] + scene_.edge_cost[edge_bit(arc)];
             label = extended(label, {0, arc, cost, 0});
         }
-        const auto f = static_cast<std::size_t>(at - frontiers_.begin());
         waiting_[f].push_back(std::move(label));
         open_.insert(f);
     }
@@ -316,12 +295,9 @@ bool PairEnumeration::settle(std::size_t frontier, std::int64_t& steps_left) {
     std::ranges::stable_sort(labels, {}, &Label::cost);
     std::vector<const Label*> kept;
     for (const Label& label : labels) {
+        const Set open = wanted_[frontier] - label.taken;
         const auto dominates = [&](const Label* other) {
-            if (other->along_heading < label.along_heading) return false;
-            for (std::size_t w = 0; w < words_; ++w) {
-                if ((other->taken[w] & wanted_[frontier][w] & ~label.taken[w]) != 0) return false;
-            }
-            return true;
+            return other->along_heading >= label.along_heading && !other->taken.intersects(open);
         };
         if (--steps_left < 0) return false;
         if (std::ranges::any_of(kept, dominates)) continue;

@@ -3,11 +3,9 @@
 #include "evaluation/proofs/exact_costs.hpp"
 #include "evaluation/proofs/walk_bounds.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <set>
-#include <unordered_map>
 #include <vector>
 
 namespace conelane {
@@ -29,7 +27,7 @@ class PairEnumeration {
     Outcome run(std::int64_t& steps_left);
 
   private:
-    using Set = std::vector<std::uint64_t>;  ///< of edges and, after them, cones
+    using Set = boost::dynamic_bitset<>;  ///< of edges and, after them, cones
     struct Frontier {
         std::size_t moving;  ///< last arc of the leg that moves, by place in the graph
         std::size_t waiting;
@@ -51,18 +49,19 @@ class PairEnumeration {
     };
 
     void find_taken();
-    [[nodiscard]] bool contains(const Set& set, std::size_t bit) const {
-        return (set[bit / 64] >> (bit % 64) & 1U) != 0;
-    }
     [[nodiscard]] std::size_t edge_bit(std::size_t place) const { return graph_.arc[place] / 2; }
+    [[nodiscard]] std::size_t tail_bit(std::size_t place) const {
+        return scene_.edges.size() + scene_.tail(graph_.arc[place]);
+    }
     [[nodiscard]] std::size_t head_bit(std::size_t place) const {
         return scene_.edges.size() + scene_.head(graph_.arc[place]);
     }
     [[nodiscard]] bool fits(const Set& taken, std::size_t place) const {
-        return !contains(taken, edge_bit(place)) && !contains(taken, head_bit(place));
+        return !taken[edge_bit(place)] && !taken[head_bit(place)];
     }
 
     [[nodiscard]] std::vector<Frontier> first_frontiers() const;
+    [[nodiscard]] std::vector<std::size_t> first_places() const;
     [[nodiscard]] Exact start_cost(const Frontier& frontier) const;
     template <typename Visit>
     void for_each_step(const Frontier& frontier, const Visit& visit) const;
@@ -86,7 +85,7 @@ class PairEnumeration {
     const WalkBounds& bounds_;
     const Exact limit_;  ///< without multipliers
     const Exact most_;   ///< with them
-    std::size_t words_ = 0;
+    std::size_t bits_ = 0;
     std::vector<std::vector<WalkCost>> leg_onward_;  ///< by kind and place
     std::vector<Set> taken_by_;                      ///< by place
     std::vector<Frontier> frontiers_;                ///< ascending

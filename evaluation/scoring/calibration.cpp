@@ -1,17 +1,11 @@
 #include "evaluation/scoring/calibration.hpp"
 
+#include "evaluation/scoring/statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace conelane {
-namespace {
-
-std::optional<double> share(std::size_t part, std::size_t all) {
-    if (all == 0) return std::nullopt;
-    return static_cast<double>(part) / static_cast<double>(all);
-}
-
-}  // namespace
 
 void Calibration::add(double confidence, bool is_usable) {
     const auto place = static_cast<std::size_t>(confidence * static_cast<double>(kBins));

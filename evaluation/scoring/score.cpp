@@ -2,8 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/divergence.hpp"
-#include "evaluation/scoring/driven_path.hpp"
-#include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/world/ground_truth.hpp"
 #include "model/geometry.hpp"
 
@@ -293,21 +291,9 @@ std::optional<double> share_of_all(std::span<const SceneScore> scores, Known kno
 }  // namespace
 
 std::string_view to_string(Category category) {
-    switch (category) {
-        case Category::none:
-            return "none";
-        case Category::ground_truth:
-            return "ground_truth";
-        case Category::diverging_below_20:
-            return "diverging_below_20";
-        case Category::diverging_from_20:
-            return "diverging_from_20";
-        case Category::too_short:
-            return "too_short";
-        case Category::near_ground_truth:
-            break;
-    }
-    return "near_ground_truth";
+    constexpr std::array<std::string_view, kCategoryCount> kNames{
+        "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short", "near_ground_truth"};
+    return kNames[static_cast<std::size_t>(category)];
 }
 
 bool is_success(Category category) {
@@ -332,17 +318,8 @@ bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
 
 std::optional<bool> SceneScore::usable() const {
     if (!divergence_known) return std::nullopt;
-    switch (category) {
-        case Category::none:
-        case Category::diverging_below_20:
-            return false;
-        case Category::ground_truth:
-            return true;
-        case Category::diverging_from_20:
-        case Category::too_short:
-        case Category::near_ground_truth:
-            break;
-    }
+    if (category == Category::ground_truth) return true;
+    if (!success()) return false;
     return is_usable(lane_length_m, ground_truth_length_m, divergence_distance_m);
 }
 

@@ -108,7 +108,7 @@ struct SceneScore {
 [[nodiscard]] LaneOutline outline_of(const Lane& lane, const Scene& scene);
 
 /// Whether a scene counts: it has a ground truth with at least two cones on each side, or it belongs to a run
-/// whose driven path shows at least kMinDriven_m of the way ahead (see driven_path.hpp).
+/// whose driven path shows at least kMinDriven_m of the way ahead (see divergence.hpp).
 [[nodiscard]] bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries = nullptr);
 
 /// Scores one answer by the measures of both papers. `nearest`: the detector saw only that many cones ahead,

@@ -154,6 +154,27 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
     return lines;
 }
 
+template <typename Value>
+void put_if_known(nlohmann::ordered_json& json, const char* key, const std::optional<Value>& value) {
+    if (value) json[key] = *value;
+}
+
+/// Bins as [lanes, mean confidence, share usable], without empty bins.
+nlohmann::ordered_json to_json(const Calibration& calibration) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    put_if_known(json, "error", calibration.error());
+    put_if_known(json, "sure_share", calibration.sure());
+    put_if_known(json, "usable_where_sure_share", calibration.usable_where_sure());
+    put_if_known(json, "right_where_trusted_share", calibration.right_where_trusted());
+    put_if_known(json, "trusted_share", calibration.trusted_share());
+    for (const Calibration::Bin& bin : calibration.bins()) {
+        if (bin.lanes == 0) continue;
+        const auto lanes = static_cast<double>(bin.lanes);
+        json["bins"].push_back({bin.lanes, bin.confidence / lanes, static_cast<double>(bin.usable) / lanes});
+    }
+    return json;
+}
+
 }  // namespace
 
 std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
@@ -213,45 +234,19 @@ std::string ScoreKey::detector_label() const {
     return nearest ? fmt::format("{} n={}", detector, *nearest) : detector;
 }
 
-namespace {
-
-/// Bins as [lanes, mean confidence, share usable], without empty bins.
-nlohmann::ordered_json to_json(const Calibration& calibration) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    const auto put_if_known = [&](const char* key, const auto& value) {
-        if (value) json[key] = *value;
-    };
-    put_if_known("error", calibration.error());
-    put_if_known("sure_share", calibration.sure());
-    put_if_known("usable_where_sure_share", calibration.usable_where_sure());
-    put_if_known("right_where_trusted_share", calibration.right_where_trusted());
-    put_if_known("trusted_share", calibration.trusted_share());
-    for (const Calibration::Bin& bin : calibration.bins()) {
-        if (bin.lanes == 0) continue;
-        const auto lanes = static_cast<double>(bin.lanes);
-        json["bins"].push_back({bin.lanes, bin.confidence / lanes, static_cast<double>(bin.usable) / lanes});
-    }
-    return json;
-}
-
-}  // namespace
-
 nlohmann::ordered_json summary_json(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
     nlohmann::ordered_json json;
-    const auto put_if_known = [&](const char* key, const auto& value) {
-        if (value) json[key] = *value;
-    };
     const auto put_measures = [&](nlohmann::ordered_json& object, std::span<const Measure> measures) {
         for (const Measure& measure : measures) {
             if (const auto value = measure.of(summary)) object[std::string(measure.key)] = *value;
         }
     };
     json["method"] = row.key.detector;
-    put_if_known("nearest", row.key.nearest);
+    put_if_known(json, "nearest", row.key.nearest);
     if (!row.key.condition.empty()) json["condition"] = row.key.condition;
-    put_if_known("false_positive_rate", row.key.false_positive_rate);
-    put_if_known("range", row.key.range_m);
+    put_if_known(json, "false_positive_rate", row.key.false_positive_rate);
+    put_if_known(json, "range", row.key.range_m);
     json["scenes"] = summary.scenes;
     json["errors"] = summary.errors;
     json["divergence_unknown"] = summary.divergence_unknown;

@@ -2,7 +2,6 @@
 
 #include "evaluation/scoring/score.hpp"
 
-#include <compare>
 #include <optional>
 #include <span>
 #include <string>

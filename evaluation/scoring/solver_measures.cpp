@@ -44,16 +44,6 @@ double penalised_average_ms(std::span<const SolverRun> runs, double limit_ms, do
     return mean(penalised_times_ms(runs, limit_ms, factor));
 }
 
-std::vector<std::size_t> solved_by_all(std::span<const std::vector<SolverRun>> by_solver) {
-    std::vector<std::size_t> solved;
-    const std::size_t runs = common_size(by_solver);
-    for (std::size_t run = 0; run < runs; ++run) {
-        if (std::ranges::all_of(by_solver, [run](const auto& one) { return one[run].solved; }))
-            solved.push_back(run);
-    }
-    return solved;
-}
-
 std::vector<std::vector<double>> performance_profiles(std::span<const std::vector<SolverRun>> by_solver,
                                                       std::span<const double> ratios) {
     const std::size_t runs = common_size(by_solver);

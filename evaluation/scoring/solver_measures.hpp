@@ -19,16 +19,13 @@ struct SolverRun {
 [[nodiscard]] std::vector<double> penalised_times_ms(std::span<const SolverRun> runs, double limit_ms,
                                                      double factor = 1.0);
 
-/// PAR k: the mean of the penalised times, k = 2 or 10. Throws InvalidInput if there is no run.
+/// PAR k: the mean of the penalised times. Throws InvalidInput if there is no run.
 [[nodiscard]] double penalised_average_ms(std::span<const SolverRun> runs, double limit_ms, double factor);
 
-/// Positions of the runs that every solver solved; `by_solver` are runs of the same instances in one order.
-/// Throws InvalidInput if their numbers differ.
-[[nodiscard]] std::vector<std::size_t> solved_by_all(std::span<const std::vector<SolverRun>> by_solver);
-
 /// Dolan and Moré's performance profile of each solver: at each of the ratios, ascending and >= 1, the share
-/// of the runs that it solves within this multiple of the fastest time. A run that no solver solves counts
-/// for none. Throws InvalidInput if the numbers of runs differ or there are none.
+/// of the runs that it solves within this multiple of the fastest time. `by_solver` are runs of the same
+/// instances in one order. A run that no solver solves counts for none. Throws InvalidInput if the numbers of
+/// runs differ or there are none.
 [[nodiscard]] std::vector<std::vector<double>> performance_profiles(
     std::span<const std::vector<SolverRun>> by_solver, std::span<const double> ratios);
 

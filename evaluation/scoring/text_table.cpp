@@ -44,9 +44,4 @@ std::string percent(std::optional<double> share, int decimals) {
     return fixed(share ? std::optional(100.0 * *share) : std::nullopt, decimals);
 }
 
-std::optional<double> share(std::size_t part, std::size_t whole) {
-    if (whole == 0) return std::nullopt;
-    return static_cast<double>(part) / static_cast<double>(whole);
-}
-
 }  // namespace conelane

@@ -39,7 +39,4 @@ class TextTable {
 /// A share times 100, as `fixed`.
 [[nodiscard]] std::string percent(std::optional<double> share, int decimals);
 
-/// part / whole; nothing if the whole is 0.
-[[nodiscard]] std::optional<double> share(std::size_t part, std::size_t whole);
-
 }  // namespace conelane

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 
 namespace conelane {
@@ -191,6 +190,8 @@ double rounded(double value, double digits) {
     return std::round(value * digits) / digits + 0.0;  // + 0.0: no negative zero
 }
 
+enum class Step : std::uint8_t { both, left, right };
+
 }  // namespace
 
 std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double every_m) {
@@ -219,12 +220,6 @@ std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double ev
     }
     return poses;
 }
-
-namespace {
-
-enum class Step : std::uint8_t { both, left, right };
-
-}  // namespace
 
 std::vector<FacingPlaces> match_boundaries(std::span<const Point> left, std::span<const Point> right) {
     const std::size_t columns = right.size();

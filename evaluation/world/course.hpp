@@ -1,19 +1,61 @@
 #pragma once
 
 #include "conelane/lane.hpp"
+#include "conelane/point.hpp"
 #include "conelane/scene.hpp"
-#include "evaluation/world/scene_draws.hpp"
 #include "evaluation/world/scene_options.hpp"
 #include "evaluation/world/track.hpp"
+#include "model/geometry.hpp"
 
-#include <cstddef>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <unordered_set>
 #include <vector>
 
+#include <boost/random/mersenne_twister.hpp>
+
 namespace conelane {
+
+using SceneGenerator = boost::random::mt19937_64;
+
+/// A generator for one purpose, so that draws for one purpose do not change those for another: FNV-1a over
+/// the text, then the finaliser of splitmix64.
+inline SceneGenerator generator_for(std::string_view text) {
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    for (const char c : text) {
+        hash ^= static_cast<unsigned char>(c);
+        hash *= 0x100000001b3U;
+    }
+    hash ^= hash >> 30U;
+    hash *= 0xbf58476d1ce4e5b9U;
+    hash ^= hash >> 27U;
+    hash *= 0x94d049bb133111ebU;
+    hash ^= hash >> 31U;
+    return SceneGenerator(hash);
+}
+
+/// Drawn numbers are rounded, because the last bits of sine, cosine and logarithm differ between C libraries.
+inline double rounded(double value, double steps_per_unit) {
+    return std::round(value * steps_per_unit) / steps_per_unit;
+}
+inline Point rounded(const Point& point) {
+    return {rounded(point.x(), 1e6), rounded(point.y(), 1e6)};
+}
+
+/// The closed half disc ahead of a car.
+struct HalfDisc {
+    Point centre;
+    Point heading;
+    double radius_m;
+
+    [[nodiscard]] bool contains(const Point& point) const {
+        const Point offset = point - centre;
+        return heading.dot(offset) >= 0.0 && offset.squaredNorm() <= radius_m * radius_m;
+    }
+};
 
 /// A place and the map from which a scene is seen.
 struct Viewpoint {
@@ -53,5 +95,38 @@ enum class Sight { out_of_view, unmapped, missed, seen };
 /// Both runs of seen cones (see generate_scenes), before the far ends are evened. `sights`: for each cone of
 /// the course.
 [[nodiscard]] Lane seen_lane(const Course& course, const std::vector<Sight>& sights, const Point& car);
+
+/// Draws ids and, with colors, colors of false positives of a course.
+class FalsePositives {
+  public:
+    FalsePositives(const Course& course, bool with_color);
+
+    [[nodiscard]] Cone draw(const Point& position, SceneGenerator& random);
+
+  private:
+    std::int64_t space_;
+    bool with_color_;
+    std::unordered_set<ConeId> used_;
+};
+
+/// Number of false positives for this many seen points: k / (seen + k) = rate.
+[[nodiscard]] long false_positives_to(double seen, double rate);
+
+/// The false positives that persist along a lap of the course; none if the condition has none.
+[[nodiscard]] std::vector<Cone> persistent_false_positives(const Course& course, const SceneOptions& options,
+                                                           const Condition& condition, double rate,
+                                                           double range_m);
+
+/// The wanted number of persistent points in view from one place.
+struct PersistentView {
+    HalfDisc view;
+    double expected_points = 0.0;
+};
+
+/// Points drawn once in the world that `views` cover. Their density at a place is the mean of the densities
+/// that the views containing it want, so each view is expected to hold about its number, exactly so if all
+/// want the same. All views have one radius, that of the first.
+[[nodiscard]] std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
+                                                        boost::random::mt19937_64& random);
 
 }  // namespace conelane

@@ -3,7 +3,6 @@
 #include "model/geometry.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <vector>
 
 namespace conelane {

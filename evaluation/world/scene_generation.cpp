@@ -2,17 +2,13 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/course.hpp"
-#include "evaluation/world/false_positives.hpp"
 #include "evaluation/world/ground_truth.hpp"
-#include "evaluation/world/scene_draws.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstddef>
 #include <future>
 #include <iterator>
 #include <optional>
@@ -20,7 +16,6 @@
 #include <string_view>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include <boost/random/beta_distribution.hpp>
 #include <boost/random/normal_distribution.hpp>
@@ -290,6 +285,26 @@ std::vector<Viewpoint> viewpoints_asked_for(const Track& track, const SceneOptio
     return viewpoints_along(track, options.every_m);
 }
 
+Lap lap_of(const Course& course, const SceneOptions& options, const std::vector<Condition>& conditions,
+           std::size_t lap) {
+    const std::size_t rates = options.false_positive_rates.size();
+    const std::size_t ranges = options.ranges_m.size();
+    const double rate = options.false_positive_rates[lap % rates] + 0.0;  // turns -0 into 0
+    const double range_m = options.ranges_m[lap / rates % ranges];
+    const Condition& condition = conditions[lap / rates / ranges];
+    return {condition, rate, range_m, persistent_false_positives(course, options, condition, rate, range_m)};
+}
+
+std::vector<AnnotatedScene> all_scenes(const Track& track, const TrackLaps& laps) {
+    std::vector<AnnotatedScene> scenes;
+    for (std::size_t lap = 0; lap < laps.size(); ++lap) {
+        std::ranges::move(laps.make(lap), std::back_inserter(scenes));
+    }
+    if (track.driven.empty())
+        std::erase_if(scenes, [](const AnnotatedScene& scene) { return !scene.ground_truth; });
+    return scenes;
+}
+
 }  // namespace
 
 TrackLaps::TrackLaps(const Track& track, std::span<const Pose> poses, const SceneOptions& options)
@@ -325,20 +340,6 @@ std::size_t TrackLaps::size() const {
     return conditions_.size() * options_.ranges_m.size() * options_.false_positive_rates.size();
 }
 
-namespace {
-
-Lap lap_of(const Course& course, const SceneOptions& options, const std::vector<Condition>& conditions,
-           std::size_t lap) {
-    const std::size_t rates = options.false_positive_rates.size();
-    const std::size_t ranges = options.ranges_m.size();
-    const double rate = options.false_positive_rates[lap % rates] + 0.0;  // turns -0 into 0
-    const double range_m = options.ranges_m[lap / rates % ranges];
-    const Condition& condition = conditions[lap / rates / ranges];
-    return {condition, rate, range_m, persistent_false_positives(course, options, condition, rate, range_m)};
-}
-
-}  // namespace
-
 std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
     if (!course_) return {};
     const Lap shared = lap_of(*course_, options_, conditions_, lap);
@@ -370,20 +371,6 @@ bool TrackLaps::is_empty(std::size_t lap) const {
     }
     return true;
 }
-
-namespace {
-
-std::vector<AnnotatedScene> all_scenes(const Track& track, const TrackLaps& laps) {
-    std::vector<AnnotatedScene> scenes;
-    for (std::size_t lap = 0; lap < laps.size(); ++lap) {
-        std::ranges::move(laps.make(lap), std::back_inserter(scenes));
-    }
-    if (track.driven.empty())
-        std::erase_if(scenes, [](const AnnotatedScene& scene) { return !scene.ground_truth; });
-    return scenes;
-}
-
-}  // namespace
 
 std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
                                             const SceneOptions& options) {

@@ -2,7 +2,6 @@
 
 #include "conelane/scene.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-#include "evaluation/world/condition.hpp"
 #include "evaluation/world/scene_options.hpp"
 #include "evaluation/world/track.hpp"
 

@@ -3,8 +3,10 @@
 #include "conelane/invalid_input.hpp"
 
 #include <algorithm>
-#include <string>
-#include <vector>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -57,6 +59,45 @@ Condition adapted(Condition condition, const SceneOptions& options) {
 
 }  // namespace
 
+std::span<const Condition> named_conditions() {
+    constexpr double kDegree_rad = std::numbers::pi / 180.0;
+    // Noise [m], pose noise [m] and [rad], misses; whether false positives persist.
+    static const std::array<Condition, 4> conditions{{{"paper"},
+                                                      {"car", 0.1, 0.3, 5.0 * kDegree_rad, 0.05, true},
+                                                      {"harsh", 0.2, 0.5, 8.0 * kDegree_rad, 0.1, true},
+                                                      {"slam", 0.1, 0.1, 1.0 * kDegree_rad, 0.05, true}}};
+    return conditions;
+}
+
+double Condition::noise_m(double distance_m) const {
+    return noise_by_range > 0.0 ? std::hypot(noise_sigma_m, noise_by_range * distance_m) : noise_sigma_m;
+}
+
+std::string noise_text(const Condition& condition) {
+    return fmt::format("noise_{}", condition.noise_sigma_m);
+}
+std::string pose_noise_text(const Condition& condition) {
+    return fmt::format("pose_noise_{}_{}", condition.pose_noise_lateral_m, condition.pose_noise_yaw_rad);
+}
+std::string miss_text(const Condition& condition) {
+    return fmt::format("miss_{}", condition.miss_rate);
+}
+std::string noise_by_range_text(const Condition& condition) {
+    return fmt::format("noise_by_range_{}", condition.noise_by_range);
+}
+
+std::vector<std::string> disturbances(const Condition& condition) {
+    std::vector<std::string> parts;
+    if (condition.noise_sigma_m > 0.0) parts.push_back(noise_text(condition));
+    if (condition.noise_by_range > 0.0) parts.push_back(noise_by_range_text(condition));
+    if (condition.pose_noise_lateral_m > 0.0 || condition.pose_noise_yaw_rad > 0.0) {
+        parts.push_back(pose_noise_text(condition));
+    }
+    if (condition.miss_rate > 0.0) parts.push_back(miss_text(condition));
+    if (condition.persistent) parts.emplace_back("persist");
+    return parts;
+}
+
 void validate(const SceneOptions& options) {
     constexpr double kMax = 1000.0;
     require_list(options.false_positive_rates, 0.0, kMaxRate, "fp");
@@ -72,13 +113,10 @@ void validate(const SceneOptions& options) {
     if (!(miss_rate >= 0.0 && miss_rate < 1.0)) {
         throw InvalidInput("miss", "must be in [0, 1)");
     }
-    require_between(options.color_error_rate, 0.0, 1.0, "color-error");
-    if (options.color_error_rate > 0.0 && !options.with_color) {
-        throw InvalidInput("color-error", "needs scenes with colour");
-    }
-    require_between(options.color_unknown_rate, 0.0, 1.0, "color-unknown");
-    if (options.color_unknown_rate > 0.0 && !options.with_color) {
-        throw InvalidInput("color-unknown", "needs scenes with colour");
+    for (const auto& [rate, key] : {std::pair{options.color_error_rate, "color-error"},
+                                    {options.color_unknown_rate, "color-unknown"}}) {
+        require_between(rate, 0.0, 1.0, key);
+        if (rate > 0.0 && !options.with_color) throw InvalidInput(key, "needs scenes with colour");
     }
     if (options.threads < 1 || options.threads > 1024) {
         throw InvalidInput("threads", "must be in [1, 1024]");

@@ -3,7 +3,6 @@
 // turns.
 
 #include "experiments/benchmarks/benchmark_scenes.hpp"
-#include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
 #include "graph_search/clc/candidate_search.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/shared/search_graph.hpp"
@@ -33,7 +32,7 @@ benchmark::Counter time_of_each(double count) {
     return {count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
 }
 
-void build_search_graph(benchmark::State& state, const EdgeRule& rule) {
+void build_search_graph(benchmark::State& state) {
     std::vector<std::vector<Point>> points;
     for (const Scene& scene : scenes()) {
         points.emplace_back();
@@ -42,12 +41,11 @@ void build_search_graph(benchmark::State& state, const EdgeRule& rule) {
     SearchGraph graph;
     std::size_t turn = 0;
     for ([[maybe_unused]] auto iteration : state) {
-        graph.build(points[turn++ % points.size()], CandidateSearchOptions{}.d_max_m, rule);
+        graph.build(points[turn++ % points.size()], CandidateSearchOptions{}.d_max_m);
         benchmark::DoNotOptimize(graph.directed_edge_count());
     }
 }
-BENCHMARK_CAPTURE(build_search_graph, all_pairs, EdgeRule{});
-BENCHMARK_CAPTURE(build_search_graph, delaunay, delaunay_edges);
+BENCHMARK(build_search_graph)->Name("build_search_graph/all_pairs");
 
 void enumerate(benchmark::State& state, const CandidateSearchOptions& options, bool with_features) {
     CandidateSearch search(options);

@@ -6,11 +6,10 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/point_snapping.hpp"
-#include "experiments/comparison/echo_floor.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/comparison/summary.hpp"
-#include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <array>
@@ -121,7 +120,6 @@ ShardedRun sort_shards(const std::vector<fs::path>& shards) {
 }  // namespace
 
 ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set, const RunRecord& record) {
-    const EchoFloor echo = read_echo_floor(directory / kEchoFloorFile);
     const RecordScorer scorer(set.scenes, set.tracks);
     std::vector<ScoredMethod> scored;
     AnswerErrors errors;
@@ -136,8 +134,8 @@ ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set
     AtomicFile results(directory / "results.jsonl");
     AtomicFile table(directory / "table.txt");
     write_scores(scores.stream(), scored);
-    write_results(results.stream(), scored, echo, record.text());
-    table.stream() << wide_table(scored, echo) << table_note_on(left_out);
+    write_results(results.stream(), scored, record.text());
+    table.stream() << wide_table(scored) << table_note_on(left_out);
     commit_together(std::array{&scores, &results, &table});
     return {summary(scored, left_out), errors};
 }
@@ -168,7 +166,6 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
     write_scene_set(directory / kScenesFile, set, left_out);
     if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     if (options.prepare) options.prepare();
-    bool any_program = false;
     for (std::size_t i = 0; i < options.methods.size(); ++i) {
         const Method& method = options.methods[i];
         const fs::path file = directory / record.methods[i].lanes_file();
@@ -178,10 +175,7 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
         } else {
             answer_scenes(method, set.scenes, options.run, file);
         }
-        any_program = any_program || method.programs;
     }
-    const fs::path echo_file = directory / kEchoFloorFile;
-    if (any_program && !fs::exists(echo_file)) write_echo_floor(echo_file, measure_echo_floor(set.scenes));
     return score_directory(directory, set, record);
 }
 
@@ -219,11 +213,6 @@ ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& dir
         }
         write_lanes(directory / method.lanes_file(), interleave<LaneRecord>(starts, lanes));
     }
-    EchoFloor echo;
-    for (const fs::path& shard : run.directories) {
-        std::ranges::copy(read_echo_floor(shard / kEchoFloorFile), std::back_inserter(echo));
-    }
-    if (!echo.empty()) write_echo_floor(directory / kEchoFloorFile, echo);
     return score_directory(directory, set, run.record);
 }
 

@@ -22,7 +22,6 @@ struct ComparisonOutcome {
 ///   scenes.scenes.jsonl    what the detectors saw
 ///   scenes.tracks.json     the boundaries that they are compared with
 ///   METHOD.lanes.jsonl     their answers; METHOD.lanes.jsonl.part until it is complete
-///   echo_floor.json        round-trip time of an echo program, if there is a program from outside
 ///   scores.jsonl           a line per scene and detector
 ///   results.jsonl          a line per detector, rate and range, with provenance
 ///   table.txt              the same as a wide table for reading

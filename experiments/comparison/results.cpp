@@ -4,8 +4,8 @@
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/detector_card_fields.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -96,14 +96,6 @@ std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, const Sc
     return times_ms;
 }
 
-nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
-    return {{"median", median(times_ms)}, {"p95", quantile(times_ms, 0.95)}};
-}
-
-std::string text_of_median_and_p95(const std::vector<double>& times_ms) {
-    return fmt::format("{:.2f} ms (median), {:.2f} (p95)", median(times_ms), quantile(times_ms, 0.95));
-}
-
 /// The number of errors, and the first message; empty if there is no error.
 std::string note_on_errors(std::span<const ScoredRecord> scored) {
     std::size_t errors = 0;
@@ -116,17 +108,17 @@ std::string note_on_errors(std::span<const ScoredRecord> scored) {
     return fmt::format("    {} of {} answers are errors, the first to {}\n", errors, scored.size(), first);
 }
 
-std::string note_on_latency(const MethodRecord& method, std::span<const ScoredRecord> scored,
-                            const EchoFloor& echo) {
+std::string note_on_latency(const MethodRecord& method, std::span<const ScoredRecord> scored) {
     if (!method.solver.empty()) {
         return fmt::format("RLD by a solver from outside, {} formulation; latency includes files and pipes",
                            to_string(method.formulation.value_or(Formulation::tight)));
     }
     if (!method.lanes.empty()) return "latency is self-timed, as the lanes file says";
     const std::vector<double> own_ms = self_times_ms(scored);
-    return "latency is the round trip of a scene and its answer; that of an echo program is " +
-           (echo.empty() ? "unknown" : text_of_median_and_p95(echo)) +
-           (own_ms.empty() ? "" : "; self-timed " + text_of_median_and_p95(own_ms));
+    if (own_ms.empty()) return "latency is the round trip of a scene and its answer";
+    return fmt::format(
+        "latency is the round trip of a scene and its answer; self-timed {:.2f} ms (median), {:.2f} (p95)",
+        median(own_ms), quantile(own_ms, 0.95));
 }
 
 double travel_m(const AnnotatedScene& from, const AnnotatedScene& to) {
@@ -246,8 +238,7 @@ void write_scores(std::ostream& output, std::span<const ScoredMethod> methods) {
     }
 }
 
-void write_results(std::ostream& output, std::span<const ScoredMethod> methods, const EchoFloor& echo,
-                   const std::string& run) {
+void write_results(std::ostream& output, std::span<const ScoredMethod> methods, const std::string& run) {
     const Provenance origin = provenance();
     const auto run_json = nlohmann::ordered_json::parse(run);
     for (const ScoredMethod& scored : methods) {
@@ -257,8 +248,8 @@ void write_results(std::ostream& output, std::span<const ScoredMethod> methods, 
             if (!method.outside().empty()) {
                 line["outside"] = method.outside();
                 const std::vector<double> own_ms = self_times_ms(scored.scores, &row.key);
-                if (!own_ms.empty()) line["self_timed_ms"] = median_and_p95(own_ms);
-                if (!method.exec.empty() && !echo.empty()) line["echo_floor_ms"] = median_and_p95(echo);
+                if (!own_ms.empty())
+                    line["self_timed_ms"] = {{"median", median(own_ms)}, {"p95", quantile(own_ms, 0.95)}};
                 if (method.card) line["card"] = value_json(*method.card, "card");
             }
             line["commit"] = origin.commit;
@@ -270,7 +261,7 @@ void write_results(std::ostream& output, std::span<const ScoredMethod> methods, 
     }
 }
 
-std::string wide_table(std::span<const ScoredMethod> methods, const EchoFloor& echo) {
+std::string wide_table(std::span<const ScoredMethod> methods) {
     std::vector<ScoreRow> rows;
     std::map<std::string, std::vector<ScoredRecord>> outside;  // of all cone-set sizes together
     for (const ScoredMethod& scored : methods) {
@@ -283,7 +274,7 @@ std::string wide_table(std::span<const ScoredMethod> methods, const EchoFloor& e
         const MethodRecord& method = scored.method;
         const auto scores = outside.extract(method.name);  // of its first cone-set size
         if (scores.empty()) continue;
-        notes += fmt::format("  {}: {}\n", method.name, note_on_latency(method, scores.mapped(), echo));
+        notes += fmt::format("  {}: {}\n", method.name, note_on_latency(method, scores.mapped()));
         if (method.card) notes += "    " + method.card->summary() + '\n';
         notes += note_on_errors(scores.mapped());
     }

@@ -6,7 +6,6 @@
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/scoring/score_table.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-#include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/run_record.hpp"
 
 #include <cstddef>
@@ -68,16 +67,15 @@ class RecordScorer {
 };
 
 /// The table of all methods, and below it the notes on those from outside.
-[[nodiscard]] std::string wide_table(std::span<const ScoredMethod> methods, const EchoFloor& echo);
+[[nodiscard]] std::string wide_table(std::span<const ScoredMethod> methods);
 
 /// Writes a line for each record with all its measures.
 void write_scores(std::ostream& output, std::span<const ScoredMethod> methods);
 
 /// Writes a line for each row. It has the summary; for a method from outside also `outside` (exec, lanes or
-/// solver), `self_timed_ms` and `echo_floor_ms` if known, and `card`; then commit, compiler and machine of
+/// solver), `self_timed_ms` if known, and `card`; then commit, compiler and machine of
 /// this program, and `run`, a JSON object with everything that the run depended on (options, parameters,
 /// seed).
-void write_results(std::ostream& output, std::span<const ScoredMethod> methods, const EchoFloor& echo,
-                   const std::string& run);
+void write_results(std::ostream& output, std::span<const ScoredMethod> methods, const std::string& run);
 
 }  // namespace conelane::experiments

@@ -7,7 +7,6 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/detector_card_fields.hpp"
-#include "experiments/comparison/echo_floor.hpp"
 
 #include <algorithm>
 #include <array>
@@ -129,9 +128,14 @@ std::set<std::string> courses_of(const MethodRecord& method, bool is_cross_valid
 
 bool is_of_a_run(const fs::path& file) {
     const std::string name = file.filename().string();
-    constexpr std::array<std::string_view, 8> kNames{
-        kRunFile, "results.jsonl",       "scores.jsonl",       "table.txt",
-        "folds",  "scenes.scenes.jsonl", "scenes.tracks.json", kEchoFloorFile};
+    constexpr std::array<std::string_view, 8> kNames{kRunFile,
+                                                     "results.jsonl",
+                                                     "scores.jsonl",
+                                                     "table.txt",
+                                                     "folds",
+                                                     "scenes.scenes.jsonl",
+                                                     "scenes.tracks.json",
+                                                     "echo_floor.json"};  // the last one is of version 0.5
     return name.ends_with(".lanes.jsonl") || name.ends_with(".lanes.jsonl.part") ||
            std::ranges::find(kNames, name) != kNames.end();
 }

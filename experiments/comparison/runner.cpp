@@ -1,6 +1,6 @@
 #include "experiments/comparison/runner.hpp"
 
-#include "experiments/progress/progress.hpp"
+#include "evaluation/progress/progress.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -18,10 +20,12 @@ namespace {
 
 constexpr std::size_t kMaxBlocks = 2;       ///< one below the other
 constexpr std::size_t kMinRows = 3;         ///< rows that are shown even if other lines have no room
+constexpr std::size_t kMinRowsOfSizes = 2;  ///< the same, of cone sets, which have more tables
 constexpr std::size_t kMaxLabelWidth = 24;  ///< a longer name is cut
 constexpr std::size_t kCellWidth = 6;       ///< " 100.0"
 constexpr std::size_t kLatencyWidth = 9;
 constexpr std::string_view kGroupGap = "  ";
+constexpr double kAllCones = std::numeric_limits<double>::infinity();  ///< as a cone-set size
 
 /// Counts over some scenes of a method.
 struct Tally {
@@ -29,11 +33,19 @@ struct Tally {
     std::size_t usable = 0;
     std::size_t scenes = 0;
     std::array<std::size_t, kLaneFailureCount> failures{};
+    std::size_t judged = 0;  ///< scenes for which accuracy is known
+    std::size_t accurate = 0;
+    std::size_t asked = 0;  ///< scenes in which a proof was looked for
+    std::size_t solved = 0;
     std::vector<double> latencies_ms;
 
     void add(const ScoredRecord& record) {
         ++scenes;
         latencies_ms.push_back(record.score.latency_ms);
+        judged += record.score.accuracy ? 1 : 0;
+        accurate += record.score.accurate() ? 1 : 0;
+        asked += record.score.solved_to_optimality ? 1 : 0;
+        solved += record.score.solved_to_optimality.value_or(false) ? 1 : 0;
         const std::optional<bool> is_usable = record.score.usable();
         if (!is_usable) return;
         ++known;
@@ -43,7 +55,33 @@ struct Tally {
     [[nodiscard]] double percent(std::size_t count) const {
         return 100.0 * static_cast<double>(count) / static_cast<double>(known);
     }
+    [[nodiscard]] std::string median_text() const { return milliseconds(median(latencies_ms)); }
+    [[nodiscard]] std::string p95_text() const { return milliseconds(quantile(latencies_ms, 0.95)); }
+    [[nodiscard]] std::string usable_text() const { return share_text(usable, known); }
+    [[nodiscard]] std::string accurate_text() const { return share_text(accurate, judged); }
+    [[nodiscard]] std::string solved_text() const { return share_text(solved, asked); }
+
+  private:
+    static std::string milliseconds(double time_ms) {
+        return fmt::format("{:.{}f}", time_ms, time_ms < 100.0 ? 2 : 0);
+    }
+    static std::string share_text(std::size_t part, std::size_t of) {
+        return of == 0 ? "-"
+                       : fmt::format("{:.1f}", 100.0 * static_cast<double>(part) / static_cast<double>(of));
+    }
 };
+
+/// A table of the summary: a measure of each column.
+struct Measure {
+    std::string_view title;
+    std::string (Tally::*text)() const;
+    enum class More { nothing, latency, growth } more = More::nothing;  ///< to the right of the columns
+};
+constexpr std::array kOfRates{Measure{"", &Tally::usable_text, Measure::More::latency}};
+/// Few cones end before a lane is usable, so of sizes there is accuracy among these cones.
+constexpr std::array kOfSizes{
+    Measure{"accurate %", &Tally::accurate_text}, Measure{"proven %", &Tally::solved_text},
+    Measure{"median ms", &Tally::median_text, Measure::More::growth}, Measure{"p95 ms", &Tally::p95_text}};
 
 /// A rate or a cone-set size, in a group of what its columns have in common: the groups in the order in which
 /// they first appear, their columns ascending.
@@ -86,35 +124,43 @@ class Summary {
         for (const ScoredMethod& method : methods) {
             for (const ScoredRecord& record : method.scores) add(record);
         }
-        // Best first; methods without known scenes last.
-        std::ranges::stable_sort(rows_, [](const Row& a, const Row& b) {
+        // Best first; methods without known scenes last; of sizes in the order of the methods.
+        std::ranges::stable_sort(rows_, [&](const Row& a, const Row& b) {
+            if (by_size_) return false;
             if (a.all.known == 0 || b.all.known == 0) return a.all.known > b.all.known;
             return a.all.percent(a.all.usable) > b.all.percent(b.all.usable);
         });
         for (const Row& row : rows_)
             label_width_ = std::max(label_width_, row.label.size() + (row.is_trained ? 1 : 0));
+        if (by_size_) label_width_ = std::max(label_width_, kOfSizes.front().title.size());
         label_width_ = std::min(label_width_, kMaxLabelWidth);
     }
 
     [[nodiscard]] std::string text(const std::vector<std::string>& notes) const {
         if (rows_.empty()) return "";
         const std::vector<Block> blocks = fitting_blocks();
-        const std::size_t blocks_count = blocks.size() * (by_size_ ? 2 : 1);
-        const std::size_t tables = blocks_count + 1;  // and the line of failures
+        const std::span<const Measure> measures = by_size_ ? std::span<const Measure>(kOfSizes) : kOfRates;
+        const std::size_t blocks_count = blocks.size() * measures.size();
+        const std::size_t tables = blocks_count + (by_size_ ? 0 : 1);  // and the line of failures
         const bool any_trained = std::ranges::any_of(rows_, &Row::is_trained);
-        const std::size_t fixed =
-            1 + 3 * blocks_count + 2 + notes.size() + (any_trained ? 1 : 0) + 1 + kLinesBelowSummary;
+        const std::size_t fixed = 1 + (has_groups() ? 3 : 2) * blocks_count + 2 + notes.size() +
+                                  (any_trained ? 1 : 0) + 1 + kLinesBelowSummary;
         const std::size_t room = fixed < kSummaryLines ? (kSummaryLines - fixed) / tables : 0;
-        const auto shown = std::span(rows_).first(std::min(rows_.size(), std::max(room, kMinRows)));
+        const auto shown = std::span(rows_).first(
+            std::min(rows_.size(), std::max(room, by_size_ ? kMinRowsOfSizes : kMinRows)));
 
         std::string text = cut(headline(), kSummaryColumns) + '\n';
-        for (std::size_t i = 0; i < blocks.size(); ++i)
-            text += table(blocks[i], shown, by_size_ ? "usable %" : "", usable_text, i == 0 && !by_size_);
-        for (std::size_t i = 0; by_size_ && i < blocks.size(); ++i)
-            text += table(blocks[i], shown, "median ms", latency_text, false);
-        text += "Not usable, in % of the scenes, and why\n";
-        for (const Row& row : shown) text += failures_line(row);
-        text += '\n';
+        for (Measure measure : measures) {
+            for (const Block& block : blocks) {
+                text += table(block, shown, measure);
+                measure.more = Measure::More::nothing;
+            }
+        }
+        if (!by_size_) {
+            text += "Not usable, in % of the scenes, and why\n";
+            for (const Row& row : shown) text += failures_line(row);
+            text += '\n';
+        }
         if (any_trained) text += "* with courses that the method has learned from: no held-out figure\n";
         text += left_out_line(blocks, shown.size());
         for (const std::string& note : notes) text += cut(note, kSummaryColumns) + '\n';
@@ -133,8 +179,7 @@ class Summary {
         Column column{0, scene.false_positive_rate};
         if (by_size_) {
             group.second = scene.false_positive_rate;
-            column.value.reset();
-            if (nearest) column.value = static_cast<double>(*nearest);
+            column.value = nearest ? static_cast<double>(*nearest) : kAllCones;
         }
         column.group = static_cast<std::size_t>(std::ranges::find(groups_, group) - groups_.begin());
         if (column.group == groups_.size()) groups_.push_back(group);
@@ -151,8 +196,8 @@ class Summary {
         std::vector<Block> blocks(1);
         std::size_t used = 0;
         const auto room_of = [&](std::size_t block) {
-            const bool has_latency = block == 0 && !by_size_;
-            return kSummaryColumns - label_width_ - (has_latency ? 2 * kLatencyWidth : 0);
+            const std::size_t more = by_size_ ? kLatencyWidth : block == 0 ? 2 * kLatencyWidth : 0;
+            return kSummaryColumns - label_width_ - more;
         };
         for (const Column& column : columns_) {
             // A group that fits into one block is not split.
@@ -180,13 +225,21 @@ class Summary {
             if (range_m) ranges += fmt::format("{}{:g}", ranges.empty() ? "; range " : ", ", *range_m);
         }
         if (!ranges.empty()) ranges += ranges_m_.size() > 1 ? " m together" : " m";
-        return fmt::format("Usable lanes in %, by {}; {} scenes a method{}",
-                           by_size_ ? "cone-set size" : "share of false positives in %",
-                           rows_.front().all.scenes, ranges);
+        const std::string what = by_size_ ? "Each method among the n nearest cones" + one_group()
+                                          : "Usable lanes in %, by share of false positives in %";
+        return fmt::format("{}; {} scenes a method{}", what, rows_.front().all.scenes, ranges);
+    }
+
+    /// Whether the columns are of several conditions and rates; else the headline names the one that there
+    /// is.
+    [[nodiscard]] bool has_groups() const { return !by_size_ || groups_.size() > 1; }
+    [[nodiscard]] std::string one_group() const {
+        const std::string title = group_title(0);
+        return has_groups() || title.empty() ? "" : ", " + title + (groups_[0].second ? " false" : "");
     }
 
     [[nodiscard]] std::string column_title(const Column& column) const {
-        if (by_size_) return column.value ? fmt::format("n={:g}", *column.value) : "all";
+        if (by_size_) return *column.value < kAllCones ? fmt::format("n={:g}", *column.value) : "all";
         return column.value ? percent_title(*column.value) : "-";
     }
 
@@ -206,38 +259,55 @@ class Summary {
         return line;
     }
 
-    static std::string usable_text(const Tally& tally) {
-        return tally.known == 0 ? "-" : fmt::format("{:.1f}", tally.percent(tally.usable));
-    }
-    static std::string latency_text(const Tally& tally) {
-        const double median_ms = median(tally.latencies_ms);
-        return fmt::format("{:.{}f}", median_ms, median_ms < 100.0 ? 2 : 0);
-    }
-
-    /// Two lines of titles and a line for each method.
-    [[nodiscard]] std::string table(const Block& block, std::span<const Row> rows, std::string_view what,
-                                    std::string (*text_of)(const Tally&), bool with_latency) const {
-        std::string text = fmt::format("{:<{}}", what, label_width_);
-        for (std::size_t begin = 0, end = 0; begin < block.size(); begin = end) {
-            while (end < block.size() && block[end].group == block[begin].group) ++end;
-            const std::size_t width = (end - begin) * kCellWidth;
-            text += fmt::format("{}{:>{}}", kGroupGap, cut(group_title(block[begin].group), width), width);
+    /// The line of the groups, if there are several, that of the columns, and a line for each method.
+    [[nodiscard]] std::string table(const Block& block, std::span<const Row> rows,
+                                    const Measure& measure) const {
+        using More = Measure::More;
+        std::string text;
+        if (has_groups()) {
+            text = fmt::format("{:<{}}", measure.title, label_width_);
+            for (std::size_t begin = 0, end = 0; begin < block.size(); begin = end) {
+                while (end < block.size() && block[end].group == block[begin].group) ++end;
+                const std::size_t width = (end - begin) * kCellWidth;
+                text +=
+                    fmt::format("{}{:>{}}", kGroupGap, cut(group_title(block[begin].group), width), width);
+            }
+            if (measure.more == More::latency)
+                text += fmt::format("{:>{}}", "latency in ms", 2 * kLatencyWidth);
+            text += '\n';
         }
-        if (with_latency) text += fmt::format("{:>{}}", "latency in ms", 2 * kLatencyWidth);
-        text += '\n' + line("method", block,
-                            [&](const Column& column) { return cut(column_title(column), kCellWidth - 1); });
-        if (with_latency) text += fmt::format("{:>{}}{:>{}}", "median", kLatencyWidth, "p99", kLatencyWidth);
+        text += line(has_groups() ? "method" : measure.title, block,
+                     [&](const Column& column) { return cut(column_title(column), kCellWidth - 1); });
+        if (measure.more == More::latency)
+            text += fmt::format("{:>{}}{:>{}}", "median", kLatencyWidth, "p99", kLatencyWidth);
+        if (measure.more == More::growth) text += fmt::format("{:>{}}", "growth", kLatencyWidth);
         for (const Row& row : rows) {
             text += '\n' + line(label_of(row), block, [&](const Column& column) {
                         const auto tally = row.of_column.find(column);
-                        return tally == row.of_column.end() ? "-" : text_of(tally->second);
+                        return tally == row.of_column.end() ? "-" : (tally->second.*measure.text)();
                     });
-            if (!with_latency) continue;
             const std::vector<double>& all_ms = row.all.latencies_ms;
-            text += fmt::format("{:>{}.2f}{:>{}.2f}", median(all_ms), kLatencyWidth, quantile(all_ms, 0.99),
-                                kLatencyWidth);
+            if (measure.more == More::latency)
+                text += fmt::format("{:>{}.2f}{:>{}.2f}", median(all_ms), kLatencyWidth,
+                                    quantile(all_ms, 0.99), kLatencyWidth);
+            if (measure.more == More::growth) text += fmt::format("{:>{}}", growth_text(row), kLatencyWidth);
         }
         return text + "\n\n";
+    }
+
+    /// The power of n by which the median grows from the least to the largest size of the first group.
+    static std::string growth_text(const Row& row) {
+        const std::pair<const Column, Tally>*least = nullptr, *most = nullptr;
+        for (const auto& of_size : row.of_column) {
+            const auto& [group, size] = of_size.first;
+            if (group > 0 || *size == kAllCones || *size == 0.0) continue;
+            if (least == nullptr) least = &of_size;
+            most = &of_size;
+        }
+        if (least == most) return "-";
+        return fmt::format("n^{:.1f}",
+                           std::log(median(most->second.latencies_ms) / median(least->second.latencies_ms)) /
+                               std::log(*most->first.value / *least->first.value));
     }
 
     [[nodiscard]] static std::string label_of(const Row& row) {

@@ -21,9 +21,10 @@ inline constexpr std::size_t kLinesBelowSummary = 3;
 /// lanes are not usable. Methods are sorted by their share of usable lanes in all scenes; equal ones stay in
 /// the order of the records.
 ///
-/// If a method has several cone-set sizes, the columns are the sizes, for the usable lanes and for the median
-/// latency. Columns and methods without room are counted; the wide table has them. `notes` are lines without
-/// newline, each cut if it is too long. Empty if nothing was scored.
+/// If a method has several cone-set sizes, the columns are the sizes, for the lanes that are accurate among
+/// these cones, the share proven, the median latency with its growth, and its 95 % quantile. Columns and
+/// methods without room are counted; the wide table has them. `notes` are lines without newline, each cut if
+/// it is too long. Empty if nothing was scored.
 [[nodiscard]] std::string summary(std::span<const ScoredMethod> methods,
                                   const std::vector<std::string>& notes);
 /// The same, with notes on methods from outside and on scenes that were left out.

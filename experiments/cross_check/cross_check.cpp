@@ -6,7 +6,7 @@
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/progress/progress.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

@@ -1,12 +1,13 @@
-"""Checks what a solver answered to the programs of a library, after run_solver.py.
+"""Checks what solvers answered to the programs of a library, after run_solver.py.
 
-    check_solutions.py LIBRARY OUT
+    check_solutions.py [--classes] LIBRARY OUT...
 
-Each point is tried in its program: rows, bounds and whole numbers within 1e-6, and its objective is computed again. A claimed optimum or
+OUT is a folder of a solver, which has its name. Each point is tried in its program: rows, bounds and whole numbers within 1e-6, and its objective is computed again. A claimed optimum or
 infeasibility is proven if the library's own proof says the same within 1e-6 of its size (`=opt=`, `=inf=`, or a `=bestdual=` that the
-point meets), wrong if a point or a proof of the library contradicts it, and otherwise unverified. The table has for each class how many programs
-are proven, unverified, only feasible, without a point, failed and wrong, and the shifted geometric mean (10 ms) of the times, with what is not
-proven at the limit. Better points of open programs are listed below it. Exit code 1 if an answer is wrong.
+point meets) or another of the solvers claims the same, wrong if a point or a proof of the library or of another solver contradicts it, and
+otherwise unverified. The table has for each solver and class how many programs are proven, unverified, only feasible, without a point, failed and
+wrong, and the shifted geometric mean (10 ms) of the times, with what is not proven at the limit. Better points of open programs are listed below
+it. Exit code 1 if an answer is wrong. With --classes, the fastest proof by one of the solvers enters the index, if it is faster than the one there.
 """
 
 import csv
@@ -71,42 +72,92 @@ def judged(program, solution, known):
     return "unverified", said or f"claims {value:.9g} to be the optimum, which the library does not know"
 
 
-def main(arguments):
-    if len(arguments) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    library, out = arguments
-    known = known_values(library)
+EASY_MS = 1000.0
+
+
+def answers_of(library, out, known):
+    """[verdict, what to say, seconds, limit, claimed or found value] of each program that was run; the value is infinite for infeasibility."""
     with open(os.path.join(out, "runs.csv"), newline="", encoding="utf-8") as stream:
         runs = {row["name"]: row for row in csv.DictReader(stream)}
-    cells, notes = defaultdict(list), []
+    answers = {}
     for row in index_of(library):
         name = name_of(row)
         if name not in runs:
             continue
         run = runs[name]
-        answer = os.path.join(out, name + ".sol")
-        verdict, said = "none", ""
+        path = os.path.join(out, name + ".sol")
+        verdict, said, value = "none", "", None
         if run["exit_code"] != "0":
             verdict, said = "failed", f"exit code {run['exit_code']}"
-        elif os.path.exists(answer):
+        elif os.path.exists(path):
             program = mps.read_mps(os.path.join(library, row["file"]))
             try:
-                verdict, said = judged(program, mps.read_solution(answer, program.cost, program.rows), known[name])
-            except (ValueError, IndexError) as error:
-                verdict, said = "wrong", f"cannot be read: {error}"
-        seconds = float(run["seconds"]) if verdict == "proven" else float(run["limit_s"])
-        cells[row["class"], row["formulation"]].append((verdict, seconds))
-        if said:
-            notes.append((verdict, f"{name}: {said}"))
-    print(f"{'class':<6} {'formulation':<12} {'programs':>8}" + "".join(f" {verdict:>10}" for verdict in VERDICTS) + f" {'mean s':>8}")
-    for (kind, formulation), cell in sorted(cells.items()):
+                solution = mps.read_solution(path, program.cost, program.rows)
+                verdict, said = judged(program, solution, known[name])
+                value = math.inf if solution.status == "infeasible" else mps.objective_of(program, solution.values)
+            except (ValueError, IndexError, KeyError) as error:
+                verdict, said = "wrong", said or f"cannot be read: {error}"
+        answers[name] = [verdict, said, float(run["seconds"]), float(run["limit_s"]), value]
+    return answers
+
+
+def compare(answers):
+    """Changes the verdicts on claims that the library does not know, by what the other solvers say of the same program."""
+    usable = [answer for answer in answers if answer[0] in ("proven", "unverified", "feasible")]
+    best = min((answer[4] for answer in usable), default=math.inf)
+    claims = [answer for answer in usable if answer[0] == "unverified"]
+    agreed = [answer for answer in claims if answer[4] == best or (answer[4] < math.inf and mps.is_same(answer[4], best))]
+    for answer in claims:
+        if answer not in agreed:
+            answer[:2] = "wrong", f"claims {answer[4]:.9g} to be the optimum, another solver has a point of {best:.9g}"
+        elif len(agreed) > 1:
+            answer[0] = "proven"
+
+
+def write_classes(library, of_solver):
+    rows = index_of(library)
+    for row in rows:
+        proofs = [(float(row["first_ms"]), row["first_by"])] if row["first_by"] else []
+        proofs += [(1000.0 * answers[name_of(row)][2], solver) for solver, answers in of_solver.items()
+                   if answers.get(name_of(row), [""])[0] == "proven"]
+        if proofs:
+            time_ms, row["first_by"] = min(proofs)
+            row["first_ms"], row["class"] = f"{time_ms:.3f}", "easy" if time_ms <= EASY_MS else "hard"
+    path = os.path.join(library, "index.csv")
+    with open(path + ".part", "w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, rows[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    os.replace(path + ".part", path)
+
+
+def main(arguments):
+    with_classes = arguments[:1] == ["--classes"]
+    library, *outs = arguments[with_classes:] or [""]
+    if not outs:
+        print(__doc__, file=sys.stderr)
+        return 2
+    known = known_values(library)
+    of_solver = {os.path.basename(os.path.normpath(out)): answers_of(library, out, known) for out in outs}
+    cells, notes = defaultdict(list), []
+    for row in index_of(library):
+        name = name_of(row)
+        compare([answers[name] for answers in of_solver.values() if name in answers])
+        for solver, answers in of_solver.items():
+            if name in answers:
+                verdict, said, seconds, limit_s, _ = answers[name]
+                cells[solver, row["class"], row["formulation"]].append((verdict, seconds if verdict == "proven" else limit_s))
+                notes += [(verdict, f"{name}: {solver}: {said}")] if said else []
+    print(f"{'solver':<16} {'class':<6} {'formulation':<12} {'programs':>8}" + "".join(f" {verdict:>10}" for verdict in VERDICTS) + f" {'mean s':>8}")
+    for (solver, kind, formulation), cell in sorted(cells.items()):
         counts = "".join(f" {sum(verdict == wanted for verdict, _ in cell):>10}" for wanted in VERDICTS)
         mean = math.exp(math.fsum(math.log(seconds + SHIFT_S) for _, seconds in cell) / len(cell)) - SHIFT_S
-        print(f"{kind:<6} {formulation:<12} {len(cell):>8}{counts} {mean:>8.3f}")
+        print(f"{solver:<16} {kind:<6} {formulation:<12} {len(cell):>8}{counts} {mean:>8.3f}")
     for verdict, note in notes:
         print(f"{verdict}: {note}")
-    return 1 if any(verdict == "wrong" for verdict, _ in notes) else 0
+    if with_classes:
+        write_classes(library, of_solver)
+    return 1 if any(answer[0] == "wrong" for answers in of_solver.values() for answer in answers.values()) else 0
 
 
 if __name__ == "__main__":

@@ -1,9 +1,5 @@
 #include "experiments/instances/instance_features.hpp"
 
-#include "model/deadline.hpp"
-#include "model/lane_graph_model.hpp"
-#include "solvers/relaxation/linear_relaxation.hpp"
-
 #include <algorithm>
 #include <limits>
 
@@ -17,26 +13,6 @@ double share_of(double part, double whole) {
 double pairs_of(std::size_t count) {
     const auto n = static_cast<double>(count);
     return n * (n - 1.0) / 2.0;
-}
-
-std::optional<InstanceFeatures::Relaxation> relaxation_features(const LaneGraphProblem& problem) {
-    if (problem.edges.empty()) return std::nullopt;
-    const LaneGraphModel model(problem, Formulation::tight);
-    const BinaryProgram& program = model.program();
-    const auto shape = relaxation_shape(program);
-    if (!shape) return std::nullopt;
-    InstanceFeatures::Relaxation features;
-    features.columns = program.columns.size();
-    features.rows = program.rows.size();
-    features.entries = program.entry_columns.size();
-    features.optimum = shape->optimum;
-    const auto share = [](std::size_t part, std::size_t whole) {
-        return share_of(static_cast<double>(part), static_cast<double>(whole));
-    };
-    features.fractional = share(shape->fractional, problem.edges.size());
-    features.degenerate = share(shape->degenerate, features.rows);
-    features.dual_degenerate = share(shape->dual_degenerate, features.columns);
-    return features;
 }
 
 }  // namespace
@@ -71,43 +47,16 @@ InstanceFeatures::Problem problem_features(const LaneGraphProblem& problem) {
     return features;
 }
 
-InstanceFeatures features_of(const Scene& cones, const RldParameters& parameters) {
-    InstanceFeatures features;
-    const Stopwatch problem_watch;
-    const LaneGraphProblem problem = make_problem(cones, parameters);
-    features.problem = problem_features(problem);
-    features.problem_ms = problem_watch.elapsed_ms();
-    const Stopwatch relaxation_watch;
-    features.relaxation = relaxation_features(problem);
-    features.relaxation_ms = relaxation_watch.elapsed_ms();
-    return features;
-}
-
 std::vector<NamedFeature> named(const InstanceFeatures& features) {
     const InstanceFeatures::Problem& p = features.problem;
     const auto number = [](std::size_t count) { return static_cast<double>(count); };
-    std::vector<NamedFeature> all{
-        {"cones", number(p.cones)},         {"near_cones", number(p.near_cones)},
-        {"edges", number(p.edges)},         {"edge_density", p.edge_density},
-        {"turns", number(p.turns)},         {"allowed_turns", number(p.allowed_turns)},
-        {"conflicts", number(p.conflicts)}, {"conflict_density", p.conflict_density},
-        {"far_apart", number(p.far_apart)}, {"mean_degree", p.mean_degree},
-        {"max_degree", p.max_degree},       {"min_cost", p.min_cost},
-        {"mean_cost", p.mean_cost}};
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    const InstanceFeatures::Relaxation* const r = features.relaxation ? &*features.relaxation : nullptr;
-    const auto put = [&](std::string_view name, auto value) {
-        all.push_back({name, r == nullptr ? kUnknown : static_cast<double>(value(*r))});
-    };
-    using Relaxation = InstanceFeatures::Relaxation;
-    put("columns", [](const Relaxation& of) { return of.columns; });
-    put("rows", [](const Relaxation& of) { return of.rows; });
-    put("entries", [](const Relaxation& of) { return of.entries; });
-    put("lp_optimum", [](const Relaxation& of) { return of.optimum; });
-    put("lp_fractional", [](const Relaxation& of) { return of.fractional; });
-    put("lp_degenerate", [](const Relaxation& of) { return of.degenerate; });
-    put("lp_dual_degenerate", [](const Relaxation& of) { return of.dual_degenerate; });
-    return all;
+    return {{"cones", number(p.cones)},         {"near_cones", number(p.near_cones)},
+            {"edges", number(p.edges)},         {"edge_density", p.edge_density},
+            {"turns", number(p.turns)},         {"allowed_turns", number(p.allowed_turns)},
+            {"conflicts", number(p.conflicts)}, {"conflict_density", p.conflict_density},
+            {"far_apart", number(p.far_apart)}, {"mean_degree", p.mean_degree},
+            {"max_degree", p.max_degree},       {"min_cost", p.min_cost},
+            {"mean_cost", p.mean_cost}};
 }
 
 }  // namespace conelane::experiments

@@ -6,11 +6,14 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/program_files.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/instances/files_together.hpp"
+#include "evaluation/outside/outside_solver.hpp"
+#include "evaluation/world/generated_tracks.hpp"
 #include "experiments/instances/instance_features.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "model/connecting_flow.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -31,25 +34,43 @@
 namespace conelane::experiments {
 namespace {
 
+/// Files that get their names together, once all of them are complete. Until then at most one is open.
+class FilesTogether {
+  public:
+    void add(const std::filesystem::path& file, const std::string& content) {
+        AtomicFile& output = *files_.emplace_back(std::make_unique<AtomicFile>(file));
+        output.stream() << content;
+        output.finish();
+    }
+    void commit() const {
+        std::vector<AtomicFile*> all;
+        for (const auto& file : files_) all.push_back(file.get());
+        commit_together(all);
+    }
+
+  private:
+    std::vector<std::unique_ptr<AtomicFile>> files_;
+};
+
 constexpr std::array kFormulations{Formulation::paper, Formulation::tight};
 /// Objectives of two engines may differ by this much: CBC knows them to the tolerance of its LP.
 constexpr double kSameObjective = 1e-6;
 
 /// The answer of a MILP solver to a program, and the rows that were added on the way.
 struct SolvedProgram {
+    std::string engine;
     MilpReport report;
     std::vector<ProgramRow> added;
     double time_ms = 0.0;
 };
 
 /// Solves the program and adds the rows that its point violates, until no row is violated or the time ends.
-SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formulation, double time_limit_ms) {
+SolvedProgram solve_and_separate(const LaneGraphModel& model, const BinaryProgram& program,
+                                 const MilpBackend& backend, double time_limit_ms) {
     const Deadline deadline(time_limit_ms);
     const Stopwatch watch;
-    // CBC's full machinery is faster on the printed program, `cbc` on the tight one.
-    const MilpBackend& backend = formulation == Formulation::paper ? kCbcMain : kCbc;
-    const std::unique_ptr<MilpSession> session = backend.load(model.program());
-    SolvedProgram solved;
+    const std::unique_ptr<MilpSession> session = backend.load(program);
+    SolvedProgram solved{std::string(backend.entry.name), {}, {}, 0.0};
     while (true) {
         solved.report = session->solve({.time_limit_ms = deadline.remaining_ms()});
         if (solved.report.status != SolveStatus::optimal) break;
@@ -96,17 +117,21 @@ KnownOptimum optimum_by_both(const std::string& name, const SolvedScene& timed, 
     KnownOptimum known;
     known.best = exact.objective;
     known.bound = milp.bound;
-    if (is_proof(exact.status)) known.path_pair_ms = timed.total_ms;
-    if (is_proof(milp.status)) known.milp_ms = solved.time_ms;
-    if (!is_proof(exact.status) || !is_proof(milp.status)) return known;
-    if (exact.status != milp.status) contradict(name, exact, milp);
-    known.status = KnownOptimum::Status::infeasible;
-    if (exact.status == SolveStatus::infeasible) return known;
-    known.status = KnownOptimum::Status::optimal;
-    const LaneGraph graph = model.decode(milp.point);
-    if (!is_feasible(problem, graph) ||
-        std::abs(objective(problem, graph) - exact.objective.value()) > kSameObjective)
+    if (exact.bound) known.bound = std::max(known.bound.value_or(*exact.bound), *exact.bound);
+    if (is_proof(exact.status)) known.proofs.push_back({"path-pair", timed.total_ms});
+    if (is_proof(milp.status)) known.proofs.push_back({solved.engine, solved.time_ms});
+    if (milp.status == SolveStatus::optimal) {
+        const LaneGraph graph = model.decode(milp.point);
+        const double value = objective(problem, graph);
+        if (!is_feasible(problem, graph) || (is_proof(exact.status) && exact.status != milp.status) ||
+            (exact.bound && value < *exact.bound - kSameObjective) ||
+            (exact.objective && value > *exact.objective + kSameObjective))
+            contradict(name, exact, milp);
+        if (!known.best || value < *known.best) known.best = value;
+    } else if (milp.status == SolveStatus::infeasible && exact.objective) {
         contradict(name, exact, milp);
+    }
+    if (known.best && known.bound) known.bound = std::min(*known.best, *known.bound);
     return known;
 }
 
@@ -131,6 +156,7 @@ std::string name_of(const std::string& id, const std::optional<std::size_t>& nea
 constexpr const char* kList = "conelane.test";
 constexpr const char* kSolutions = "conelane.solu";
 constexpr const char* kIndex = "index.csv";
+constexpr const char* kConeSets = "conelane.scenes.jsonl";
 constexpr std::string_view kProgramEnding = ".mps.gz";
 
 /// The programs of the library in a folder, by the names in its list. Throws InputError if the folder has a
@@ -153,6 +179,16 @@ std::vector<std::filesystem::path> listed_programs(const std::filesystem::path& 
     return programs;
 }
 
+std::string cone_set_lines(std::span<const InstanceScene> sets) {
+    std::string lines;
+    for (const InstanceScene& set : sets) {
+        Scene named = set.scene;
+        named.id = set.name;
+        lines += scene_line(named) + '\n';
+    }
+    return lines;
+}
+
 std::string mps_text(const Instance& instance) {
     std::ostringstream text;
     write_mps(text, instance.program, instance.name);
@@ -161,10 +197,9 @@ std::string mps_text(const Instance& instance) {
 
 std::string solution_lines(const Instance& instance) {
     const KnownOptimum& known = instance.optimum;
-    if (known.status == KnownOptimum::Status::infeasible) return fmt::format("=inf= {}\n", instance.name);
+    if (known.is_infeasible()) return fmt::format("=inf= {}\n", instance.name);
     // Twelve digits: the engines agree on no more, and sums differ between machines after them.
-    if (known.status == KnownOptimum::Status::optimal)
-        return fmt::format("=opt= {} {:.12g}\n", instance.name, known.best.value());
+    if (known.is_optimal()) return fmt::format("=opt= {} {:.12g}\n", instance.name, known.best.value());
     std::string lines;
     if (known.best) lines += fmt::format("=best= {} {:.12g}\n", instance.name, *known.best);
     if (known.bound && std::isfinite(*known.bound) && std::abs(*known.bound) < kInfinity)
@@ -181,13 +216,22 @@ std::optional<Instance> instance_of(const Scene& scene, const std::string& name,
     if (!limited.problem || limited.problem->edges.empty()) return std::nullopt;
     LaneGraphModel model(formulation);
     if (model.update(*limited.problem, no_deadline)) return std::nullopt;
-    const SolvedProgram solved = solve_and_separate(model, formulation, time_limit_ms);
+    // CBC's full machinery is faster on the printed program and on a flow, `cbc` on the tight one.
+    const MilpBackend& backend = formulation == Formulation::paper ? kCbcMain : kCbc;
+    SolvedProgram solved = solve_and_separate(model, model.program(), backend, time_limit_ms);
     Instance instance{name, model.program(), optimum_by_both(name, exact, solved, *limited.problem, model)};
-    if (instance.optimum.status != KnownOptimum::Status::not_by_both) {
+    if (instance.optimum.is_by_both()) {
         add_rows(instance.program, solved.added);
-    } else if (!solved.added.empty()) {
-        instance.optimum.bound.reset();  // it is the bound of a program with more rows
+        return instance;
     }
+    instance.has_flow = true;
+    add_connecting_flow(instance.program, *limited.problem);
+    if (is_proof(solved.report.status)) return instance;
+    const std::optional<double> bound = solved.report.bound;
+    solved = solve_and_separate(model, instance.program, kCbcMain, time_limit_ms);
+    solved.engine += " all rows";
+    if (bound) solved.report.bound = std::max(solved.report.bound.value_or(*bound), *bound);
+    instance.optimum = optimum_by_both(name, exact, solved, *limited.problem, model);
     return instance;
 }
 
@@ -207,25 +251,30 @@ std::vector<NamedFeature> features_of_problem(const Scene& scene, const RldParam
 
 std::string index_head(std::span<const NamedFeature> features) {
     std::string line =
-        "file,track,condition,false_positive_rate,range_m,nearest,costs,pairing,formulation,class,"
-        "proved_by,best,bound,program_columns,program_rows,program_entries";
+        "file,track,split,condition,false_positive_rate,range_m,nearest,costs,pairing,formulation,class,"
+        "proved_by,first_by,first_ms,rows,best,bound,program_columns,program_rows,program_entries";
     for (const NamedFeature& feature : features) line += fmt::format(",{}", feature.name);
     return line + '\n';
 }
 
 std::string_view proved_by(const KnownOptimum& optimum) {
-    if (optimum.path_pair_ms && optimum.milp_ms) return "both";
-    return optimum.path_pair_ms ? "path-pair" : optimum.milp_ms ? "cbc" : "none";
+    if (optimum.proofs.empty()) return "none";
+    if (optimum.proofs.size() > 1) return "both";
+    return optimum.proofs.front().engine == "path-pair" ? "path-pair" : "cbc";
 }
 
 std::string index_line(const InstanceScene& set, const InstanceObjective& objective, Formulation formulation,
                        const Instance& instance, std::span<const NamedFeature> features) {
+    const Proof* const first = instance.optimum.first();
     std::string line = fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", instance.name + std::string(kProgramEnding),
-        set.track, set.condition, number(set.false_positive_rate), number(set.range_m),
-        set.nearest ? std::to_string(*set.nearest) : "all", objective.costs,
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+        instance.name + std::string(kProgramEnding), set.track,
+        is_tuning_course(set.track) ? "tuning" : "held out", set.condition, number(set.false_positive_rate),
+        number(set.range_m), set.nearest ? std::to_string(*set.nearest) : "all", objective.costs,
         to_string(objective.parameters.pairing), ending_of(formulation).substr(1),
-        to_string(class_of(instance.optimum)), proved_by(instance.optimum), number(instance.optimum.best),
+        to_string(class_of(instance.optimum)), proved_by(instance.optimum),
+        first == nullptr ? "" : first->engine, first == nullptr ? "" : fmt::format("{:.3f}", first->time_ms),
+        instance.has_flow ? "flow" : "separated", number(instance.optimum.best),
         number(instance.optimum.bound), instance.program.columns.size(), instance.program.rows.size(),
         instance.program.entry_columns.size());
     for (const NamedFeature& feature : features) line += fmt::format(",{:.6g}", feature.value);
@@ -241,11 +290,23 @@ std::string InstanceObjective::suffix() const {
     return text;
 }
 
+const Proof* KnownOptimum::first() const {
+    const auto fastest = std::ranges::min_element(proofs, {}, &Proof::time_ms);
+    return fastest == proofs.end() ? nullptr : &*fastest;
+}
+
 InstanceClass class_of(const KnownOptimum& optimum) {
-    if (!optimum.path_pair_ms && !optimum.milp_ms) return InstanceClass::open;
-    const bool is_easy = optimum.path_pair_ms && *optimum.path_pair_ms <= kEasy_ms && optimum.milp_ms &&
-                         *optimum.milp_ms <= kEasy_ms;
-    return is_easy ? InstanceClass::easy : InstanceClass::hard;
+    const Proof* const first = optimum.first();
+    if (first == nullptr) return InstanceClass::open;
+    return first->time_ms <= kEasy_ms ? InstanceClass::easy : InstanceClass::hard;
+}
+
+bool is_tuning_course(std::string_view track) {
+    constexpr std::array<std::string_view, 6> kTuned{"pacsim_FSE22", "pacsim_FSG19",     "pacsim_FSO20",
+                                                     "eufs_peanut",  "eufs_small_track", "eufs_comp_2021"};
+    const std::vector<std::string> generated = generated_track_names();
+    return track.starts_with("fsd_") || std::ranges::find(kTuned, track) != kTuned.end() ||
+           std::ranges::find(generated, track.substr(0, track.find('@'))) != generated.end();
 }
 
 std::string_view to_string(InstanceClass instance_class) {
@@ -328,11 +389,12 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
                 index += index_line(set, objective, formulation, *instance, features);
                 ++counts.written;
                 ++counts.of_class.at(static_cast<std::size_t>(class_of(instance->optimum)));
-                counts.optimal += instance->optimum.status == KnownOptimum::Status::optimal ? 1 : 0;
-                counts.infeasible += instance->optimum.status == KnownOptimum::Status::infeasible ? 1 : 0;
+                counts.optimal += instance->optimum.is_optimal() ? 1 : 0;
+                counts.infeasible += instance->optimum.is_infeasible() ? 1 : 0;
             }
         }
     }
+    files.add(folder / kConeSets, cone_set_lines(scenes));
     files.add(folder / kIndex, index);
     files.add(folder / kSolutions, solutions);
     files.add(folder / kList, list);

@@ -39,22 +39,27 @@ struct InstanceOptions {
     double time_limit_ms = 10'000.0;                ///< of each engine, for each program
 };
 
-/// State of a program's optimum.
-struct KnownOptimum {
-    enum class Status {
-        optimal,      ///< both engines proved `best`
-        infeasible,   ///< both engines proved that there is no point
-        not_by_both,  ///< at least one of the engines did not finish
-    };
-    Status status = Status::not_by_both;
-    std::optional<double> best;          ///< objective of a point; present if optimal
-    std::optional<double> bound;         ///< proven lower bound of the program in its file
-    std::optional<double> path_pair_ms;  ///< time of the proof by path-pair; absent if it did not finish
-    std::optional<double> milp_ms;       ///< time of the proof by CBC; absent if it did not finish
+/// An engine that proved an optimum, or that there is no point.
+struct Proof {
+    std::string engine;  ///< path-pair, cbc or cbc-main; "cbc-main all rows" on the program with the flow
+    double time_ms = 0.0;
 };
 
-/// How hard a program is for the two engines of this project: easy if each proves its optimum within
-/// kEasy_ms, open if neither does within the time limit, else hard. It depends on the machine.
+/// State of a program's optimum.
+struct KnownOptimum {
+    std::optional<double> best;   ///< objective of a lane graph
+    std::optional<double> bound;  ///< highest proven lower bound
+    std::vector<Proof> proofs;    ///< at most one by path-pair, then one by CBC
+
+    [[nodiscard]] bool is_by_both() const { return proofs.size() == 2; }
+    [[nodiscard]] bool is_optimal() const { return is_by_both() && best; }
+    [[nodiscard]] bool is_infeasible() const { return is_by_both() && !best; }
+    /// The fastest proof; nullptr without one.
+    [[nodiscard]] const Proof* first() const;
+};
+
+/// How hard a program is for the best of the engines: easy if one proves its optimum within kEasy_ms, hard if
+/// one does within the time limit, else open. It depends on the machine.
 enum class InstanceClass { easy, hard, open };
 inline constexpr double kEasy_ms = 1000.0;
 [[nodiscard]] InstanceClass class_of(const KnownOptimum& optimum);
@@ -77,18 +82,23 @@ struct InstanceScene {
 /// How a formulation's files end, before `.mps.gz`: ".printed" or ".tight".
 [[nodiscard]] std::string_view ending_of(Formulation formulation);
 
-/// A program that can be solved by itself.
+/// Whether a course is one of those on which path-pair and the parameters of RLD were developed: the FSD
+/// courses, all generated ones, and those that the records of `tune` name. All others are held out.
+[[nodiscard]] bool is_tuning_course(std::string_view track);
+
+/// A program that can be solved by itself: its optimum is that of the scene.
 struct Instance {
     std::string name;
     BinaryProgram program;
     KnownOptimum optimum;
+    bool has_flow = false;  ///< all rows, by add_connecting_flow; else those that were separated
 };
 
 /// The program of a scene with rows of no cycles (5) and of the pairing such that its optimum is a lane
-/// graph: CBC solves it, and the rows that its point violates are added, until none is violated. So the
-/// optimum of the file is that of the scene, which path-pair finds independently, without a program. If CBC
-/// does not finish, no rows are added, and `best` is the scene's optimum, while the program may have a lower
-/// one. Nothing if there is no program: without columns, or with more entries than kMaxProgramEntries. Throws
+/// graph. CBC solves it, and the rows that its point violates are added, until none is violated. path-pair
+/// finds the optimum independently, without a program. If both find the same, the program has these rows,
+/// else all rows by a flow; CBC solves the program with the flow too if it did not finish before. Nothing if
+/// there is no program: without columns, or with more entries than kMaxProgramEntries. Throws
 /// std::logic_error if the engines contradict each other.
 [[nodiscard]] std::optional<Instance> make_instance(const Scene& scene, const std::string& name,
                                                     Formulation formulation, const RldParameters& parameters,
@@ -105,12 +115,13 @@ struct InstanceCounts {
 
 /// Writes NAME.printed.mps.gz and NAME.tight.mps.gz for each scene and objective into the folder, then
 /// conelane.test, the list of these files, conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or for any
-/// other optimum `=best= NAME VALUE` and `=bestdual= NAME VALUE`, as far as they are known, and index.csv: a
-/// line for each file, with its scene, objective, class and features. The same scenes
-/// give the same files, except open ones and the classes, which depend on the clock. `advance` is called
-/// after each program.
-/// A library in the folder is replaced when all files of the new one are complete; until then it stays.
-/// Throws InputError, also if the folder holds a program that no list names, or another process writes there.
+/// other optimum `=best= NAME VALUE` and `=bestdual= NAME VALUE`, as far as they are known, index.csv: a
+/// line for each file, with its scene, objective, class, rows and features, and conelane.scenes.jsonl: the
+/// cone sets, whose ids are the names without objective and formulation. The same scenes give the same files,
+/// except those that an engine does not finish in time, and the classes. `advance` is called after each
+/// program. A library in the folder is replaced when all files of the new one are complete; until then it
+/// stays. Throws InputError, also if the folder holds a program that no list names, or another process writes
+/// there.
 [[nodiscard]] InstanceCounts write_instances(const std::filesystem::path& folder,
                                              std::span<const InstanceScene> scenes,
                                              const InstanceOptions& options,

@@ -8,26 +8,27 @@
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/training/front_training.hpp"
-#include "experiments/training/rld_training.hpp"
-#include "experiments/training/training_run.hpp"
-#include "experiments/tuning/detector_tuning.hpp"
-#include "experiments/tuning/evaluation.hpp"
-#include "experiments/tuning/evaluation_log.hpp"
-#include "experiments/tuning/parameter_ranges.hpp"
-#include "experiments/tuning/tuner.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
+#include "learning/training/front_training.hpp"
+#include "learning/training/rld_training.hpp"
+#include "learning/training/training_run.hpp"
+#include "learning/tuning/detector_tuning.hpp"
+#include "learning/tuning/evaluation.hpp"
+#include "learning/tuning/parameter_ranges.hpp"
+#include "learning/tuning/tuner.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 namespace conelane::experiments {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace learning;
 
 constexpr const char* kStepScores = "step_scores.json";
 constexpr const char* kExtendedNet = "rank_net_extended.json";
@@ -169,8 +170,8 @@ Learned load_tuned(const DetectorRecipe& recipe, const fs::path& folder) {
 
 RldParameters tuned_shape(const LearningOptions& options, const EvaluationOptions& solved) {
     const Evaluation evaluation(scenes_to_tune_on(options), solved);
-    return tune([&](const RldParameters& parameters) { return evaluation(parameters); },
-                with_shape_costs(RldParameters{}), {1, options.evaluations, options.scenes.seed})
+    return tune(std::cref(evaluation), with_shape_costs(RldParameters{}),
+                {options.evaluations, options.scenes.seed})
         .parameters;
 }
 
@@ -183,7 +184,7 @@ RldParameters with_color_weight(const RldParameters& parameters, const LearningO
     for (const double weight : kColorWeights) {
         RldParameters tried = parameters;
         tried.w_color = weight;
-        const double value = mean_over_scenes(evaluation(tried));
+        const double value = evaluation(tried);
         if (value <= best_value) continue;
         best = tried;
         best_value = value;

@@ -5,8 +5,6 @@
 #include "evaluation/outside/outside_program.hpp"
 #include "evaluation/outside/outside_solver.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
-#include "graph_search/clc/clc_detector.hpp"
 #include "model/deadline.hpp"
 #include "model/doubled_cones.hpp"
 #include "solvers/registry.hpp"
@@ -31,22 +29,6 @@ std::unique_ptr<RldSolver> printed_cbc() {
     return find_rld_solver("cbc-main")->make(Formulation::paper);
 }
 
-std::unique_ptr<LaneDetector> without_beam() {
-    ClcOptions clc = extended_clc_options();
-    clc.step_scores = nullptr;
-    return make_clc_detector(clc);
-}
-
-std::unique_ptr<LaneDetector> on_delaunay_graph() {
-    ClcOptions clc = paper_clc_options();
-    clc.edge_rule = delaunay_edges;
-    return make_clc_detector(clc);
-}
-
-std::unique_ptr<LaneDetector> longest_lane() {
-    return make_clc_detector({});
-}
-
 constexpr DetectorRecipe kCbcRecipes[]{
     {{"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", ClosedLanes::never,
       ColorUse::by_weight},
@@ -56,20 +38,6 @@ constexpr DetectorRecipe kCbcRecipes[]{
       ClosedLanes::never, ColorUse::by_weight},
      LearnedFrom::nothing(),
      RldRecipe{printed_cbc, {kRldConeSet, {}}}},
-};
-constexpr DetectorRecipe kAblations[]{
-    {{"clc-no-beam", "clc whose first search follows no lane of a beam search", ClosedLanes::possible,
-      ColorUse::ignored},
-     LearnedFrom(kClcRankWeights),
-     OtherRecipe{without_beam}},
-    {{"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", ClosedLanes::possible,
-      ColorUse::ignored},
-     LearnedFrom(kPaperClcWeights),
-     OtherRecipe{on_delaunay_graph}},
-    {{"clc-longest", "CLC without network: the longest of the enumerated lanes", ClosedLanes::possible,
-      ColorUse::ignored},
-     LearnedFrom::nothing(),
-     OtherRecipe{longest_lane}},
 };
 
 /// The problem that lanes of RLD are checked against.
@@ -156,17 +124,14 @@ DetectorMaker maker_of_solver(const OutsideDetector& solver, const RldDetectorOp
 
 std::vector<Method> all_methods() {
     std::vector<Method> all;
-    const auto add = [&all](std::span<const DetectorRecipe> recipes, bool are_ablations = false) {
+    const auto add = [&all](std::span<const DetectorRecipe> recipes) {
         for (const DetectorRecipe& recipe : recipes) {
-            all.push_back({.name = std::string(recipe.name),
-                           .recipe = &recipe,
-                           .is_ablation = are_ablations,
-                           .learner = find_learner(recipe)});
+            all.push_back(
+                {.name = std::string(recipe.name), .recipe = &recipe, .learner = find_learner(recipe)});
         }
     };
     add(detector_recipes());
     if (find_rld_solver("cbc") != nullptr) add(kCbcRecipes);
-    add(kAblations, true);
     return all;
 }
 

@@ -53,7 +53,6 @@ struct Method {
     const DetectorRecipe* recipe = nullptr;       ///< of a detector of this program
     std::optional<OutsideDetector> outside = {};  ///< of any other
     std::optional<std::size_t> nearest = {};      ///< cone-set size that replaces its own
-    bool is_ablation = false;          ///< another detector without a part, or as its paper prints it
     const Learner* learner = nullptr;  ///< null if it learns nothing: its answers are the same in every fold
     /// The processes of a program from outside. They run from lap to lap, as long as a copy of this exists.
     std::shared_ptr<OutsideProgramPool> programs = {};

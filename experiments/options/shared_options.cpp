@@ -216,10 +216,6 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->capture_default_str();
 }
 
-void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description) {
-    command.add_option("--seed", seed, description)->check(CLI::Validator(seed_fault, ""));
-}
-
 RldParameters ParameterSource::load() const {
     DetectorOptions options;
     apply_to(options);
@@ -295,6 +291,30 @@ void add_threads_option(CLI::App& command, unsigned& threads, const std::string&
     command.add_option("--threads", threads, description)
         ->check(whole_number(1, kMaxThreads))
         ->capture_default_str();
+}
+
+CLI::Option* add_sizes_option(CLI::App& command, std::vector<std::string>& sizes,
+                              const std::string& description) {
+    return command.add_option("--sizes", sizes, description)
+        ->delimiter(',')
+        ->check([](const std::string& size) {
+            return size == "all" ? std::string() : whole_number(1, kMaxCones)(size);
+        })
+        ->capture_default_str();
+}
+
+void add_shard_option(CLI::App& command, Shard& shard, const std::string& description) {
+    const auto parse = [&shard](const std::string& text) {
+        const std::size_t slash = text.find('/');
+        const char* const end = text.data() + text.size();
+        const auto index = std::from_chars(text.data(), end, shard.index);
+        if (slash != std::string::npos && index.ec == std::errc{} && index.ptr == text.data() + slash) {
+            const auto count = std::from_chars(text.data() + slash + 1, end, shard.count);
+            if (count.ec == std::errc{} && count.ptr == end && shard.index < shard.count) return;
+        }
+        throw CLI::ValidationError("--shard", "'" + text + "' is not I/N with 0 <= I < N");
+    };
+    command.add_option_function<std::string>("--shard", parse, "I/N: " + description);
 }
 
 }  // namespace conelane::experiments

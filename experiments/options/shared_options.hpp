@@ -1,6 +1,7 @@
 #pragma once
 
 #include "conelane/detectors.hpp"
+#include "evaluation/formats/scene_set.hpp"
 #include "evaluation/world/annotated_scene.hpp"
 #include "evaluation/world/scene_generation.hpp"
 
@@ -27,6 +28,10 @@ inline constexpr std::size_t kMaxCones = 100'000;
 /// Throws InvalidInput if a text is neither, or a size is there twice.
 [[nodiscard]] std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option,
                                                                      std::span<const std::string> texts);
+
+/// --sizes N,..., texts for cone_set_sizes; their values are the default
+CLI::Option* add_sizes_option(CLI::App& command, std::vector<std::string>& sizes,
+                              const std::string& description);
 
 /// At most `limit` of them, evenly spread.
 template <typename Value>
@@ -74,8 +79,8 @@ CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::
 /// option that names a file counts as an input, a track by its SPEC, a scenes file with its companion. Throws
 /// CLI::ValidationError naming both.
 void refuse_lost_inputs(CLI::App& command);
-/// --seed N, if the default is set elsewhere
-void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description);
+/// --shard I/N; throws CLI::ValidationError for anything else
+void add_shard_option(CLI::App& command, Shard& shard, const std::string& description);
 /// --threads T
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& description);
 

@@ -1,6 +1,7 @@
 #include "experiments/race/race.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/planner/lane_stretch.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "model/deadline.hpp"
 
@@ -29,9 +30,11 @@ constexpr double kHalfLength_m = 1.4;
 constexpr double kMiddleAhead_m = 0.775;  ///< of the rear axle
 constexpr double kUnsteady_m = 0.3;
 constexpr double kNear_m = 10.0;  ///< length ahead of the car in which a path is compared
-constexpr double kTruthAhead_m = 20.0;
-constexpr double kStopMargin_m = 0.5;  ///< tolerance for the driver `truth`, whose pose is noisy
 constexpr double kMaxAcceleration_mps2 = 6.0;
+constexpr double kCreep_mps = 1.5;     ///< on a path that is not trusted, where the speed follows the trust
+constexpr double kSafeAhead_m = 60.0;  ///< longest part of a path that is driven by
+constexpr double kSteadyAt_m = 5.0;
+constexpr double kShort_m = 3.0;
 constexpr double kMaxHalt_s = 5.0;
 
 constexpr double kJump_m = 0.5;
@@ -52,10 +55,6 @@ Point left_of(const Pose& pose) {
     return {-pose.heading().y(), pose.heading().x()};
 }
 
-Point direction(double angle_rad) {
-    return {std::cos(angle_rad), std::sin(angle_rad)};
-}
-
 /// Whether a line moved by more than kUnsteady_m within kNear_m of the car, where both lines exist.
 bool moved(const std::vector<Point>& before, const std::vector<Point>& now) {
     double along_m = 0.0;
@@ -68,6 +67,27 @@ bool moved(const std::vector<Point>& before, const std::vector<Point>& now) {
         if (!past_end && !before_start && foot.distance_m > kUnsteady_m) return true;
     }
     return false;
+}
+
+/// 95 of 100 numbers are at most this; nothing of none.
+std::optional<double> p95(std::vector<double> values) {
+    if (values.empty()) return std::nullopt;
+    const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+    std::ranges::nth_element(values, values.begin() + rank);
+    return values[static_cast<std::size_t>(rank)];
+}
+
+/// A path as a lane, with curvatures.
+DrivableLane lane_along(const std::vector<Point>& path) {
+    DrivableLane lane;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const Point step = path[std::min(i + 1, path.size() - 1)] - path[i];
+        lane.points.push_back({.s_m = lane.length_m, .heading_rad = std::atan2(step.y(), step.x())});
+        lane.length_m += step.norm();
+    }
+    if (path.size() > 1) lane.points.back().heading_rad = lane.points[path.size() - 2].heading_rad;
+    even_curvatures(lane);
+    return lane;
 }
 
 /// The beginning of a path, of about this length.
@@ -92,8 +112,9 @@ double uniform(Generator& random, double low, double high) {
 struct Answer {
     Drive drive;
     double frame_s = 0.0;
-    int arrives = 0;      ///< the step
-    double from_m = 0.0;  ///< how far the path has been followed
+    int arrives = 0;                      ///< the step
+    double from_m = 0.0;                  ///< how far the path has been followed
+    std::vector<SpeedPoint> speeds = {};  ///< along it, if the speed follows the trust
 };
 
 /// The car drives by the path of the newest frame. Between frames it knows its own motion, so the error of
@@ -122,6 +143,18 @@ struct Car {
         error_yaw_rad = believed.yaw_rad - vehicle.pose.yaw_rad;
     }
 
+    /// By the speeds along the path, but no slower than a creep.
+    void change_speed(const VehicleLimits& limits) {
+        double wanted_mps = 0.0;
+        if (path) {
+            const auto next = std::ranges::find_if(
+                path->speeds, [&](const SpeedPoint& point) { return point.s_m > path->from_m; });
+            wanted_mps = std::max(kCreep_mps, next == path->speeds.end() ? 0.0 : next->v_mps);
+        }
+        speed_mps = std::clamp(wanted_mps, std::max(0.0, speed_mps - limits.a_brake_mps2 * kStep_s),
+                               speed_mps + limits.a_drive_mps2 * kStep_s);
+    }
+
     void take(Answer answer) {
         newest_s = answer.frame_s;
         is_stopping = answer.drive.stop;
@@ -142,6 +175,8 @@ struct Car {
         const double change_mps = kMaxAcceleration_mps2 * kStep_s;
         if (is_braking || (is_stopping && options.with_stop)) {
             speed_mps = std::max(0.0, speed_mps - change_mps);
+        } else if (options.by_safe) {
+            change_speed(options.limits);
         } else if (has_begun || !options.with_stop) {
             speed_mps = std::min(options.speed_mps, speed_mps + change_mps);
         }
@@ -203,11 +238,12 @@ class Sensor {
             return step > 0 && std::fmod(time_s + 1e-9, every_s) < kFrame_s / 2.0;
         };
         if (options_.fault == RaceFault::jump && comes(kFaultEvery_s)) {
-            first_map_.shift += kJump_m * direction(uniform(random_, -std::numbers::pi, std::numbers::pi));
+            first_map_.shift +=
+                kJump_m * Pose{{0.0, 0.0}, uniform(random_, -std::numbers::pi, std::numbers::pi)}.heading();
         }
         if (options_.fault == RaceFault::ids && comes(kFaultEvery_s)) world_.change_ids();
         map_ = first_map_.turned(drift_sense_ * options_.drift_rad * share, start_,
-                                 options_.drift_m * share * direction(drift_direction_rad_));
+                                 options_.drift_m * share * Pose{{0.0, 0.0}, drift_direction_rad_}.heading());
         const Pose believed = world_.disturbed(car.vehicle.pose);
         car.believe(believed);
         Frame frame = world_.look(believed, map_, time_s);
@@ -316,8 +352,10 @@ class Referee {
         result_.answer_ms.push_back(answer_ms);
     }
     void note_refusal() { ++result_.frames_refused; }
-    /// `path`: the first metres of the answer in the world; empty: none.
-    void note_answer(const Drive& drive, const std::vector<Point>& path) {
+    /// `whole`: the path of the answer in the world; empty: none.
+    void note_answer(const Drive& drive, const std::vector<Point>& whole) {
+        note_trust(drive, whole);
+        const std::vector<Point> path = beginning(whole, 20.0);
         is_planner_ = is_planner_ || !drive.state.empty();
         if (path.empty()) {
             ++result_.frames_without_path;
@@ -351,6 +389,13 @@ class Referee {
         foot_.follow(middle);
         note_hits({middle, car.vehicle.pose.yaw_rad});
         errors_m_.push_back(foot_.distance_m());
+        LapFigures& lap = of_lap();
+        ++lap_steps_;
+        if (driven_m() >= (laps_done_ + 1) * lap_m_) {
+            ++lap.laps;
+            ++laps_done_;
+            lap.time_s += std::exchange(lap_steps_, 0) * kStep_s;
+        }
         const bool is_out = course_.half_width_m ? foot_.distance_m() > *course_.half_width_m
                                                  : !stays_in_ring(course_.lane, {before, middle});
         if (is_out) {
@@ -380,17 +425,34 @@ class Referee {
             result_.finished_laps = static_cast<int>(std::floor(result_.driven_m / foot_.round_m() + 1e-9));
         }
         result_.cones_hit = static_cast<int>(hit_.size());
-        if (!errors_m_.empty()) {
-            const auto rank = static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors_m_.size() - 1));
-            std::ranges::nth_element(errors_m_, errors_m_.begin() + rank);
-            result_.lateral_error_p95_m = errors_m_[static_cast<std::size_t>(rank)];
-        }
+        result_.lateral_error_p95_m = p95(std::move(errors_m_));
+        for (std::size_t i = 0; i < 2; ++i) result_.by_lap[i].sideways_p95_m = p95(std::move(sideways_m_[i]));
         if (pairs_ > 0) result_.unsteady_share = static_cast<double>(unsteady_) / pairs_;
         return std::move(result_);
     }
 
   private:
     [[nodiscard]] double driven_m() const { return std::max(0.0, foot_.at_m() - start_m_); }
+
+    [[nodiscard]] LapFigures& of_lap() { return result_.by_lap[laps_done_ > 0 ? 1 : 0]; }
+
+    void note_trust(const Drive& drive, const std::vector<Point>& path) {
+        LapFigures& lap = of_lap();
+        ++lap.frames;
+        if (path.empty() || drive.safe_m < kShort_m) {
+            ++lap.short_frames;
+            if (!path.empty() && !leaves(course_, path, kNear_m, foot_)) ++lap.right_untrusted;
+        }
+        if (!path.empty() && leaves(course_, path, std::min(kSafeAhead_m, drive.safe_m), foot_))
+            ++lap.wrong_trusted;
+        const std::vector<Point> near = beginning(path, kSteadyAt_m);
+        if (!near.empty() && !path_before_.empty())
+            sideways_m_[laps_done_ > 0 ? 1 : 0].push_back(
+                foot_on_polyline(near.back(), path_before_).distance_m);
+        for (const DrivablePoint& point : lane_along(beginning(path, kNear_m)).points) {
+            lap.max_curvature_1pm = std::max(lap.max_curvature_1pm, std::abs(point.curvature_1pm));
+        }
+    }
 
     void note_hits(const Pose& middle) {
         for (std::size_t i = 0; i < course_.cones.size(); ++i) {
@@ -423,6 +485,9 @@ class Referee {
     int unsteady_ = 0;
     std::set<std::size_t> hit_;
     std::vector<double> errors_m_;
+    std::array<std::vector<double>, 2> sideways_m_;
+    int laps_done_ = 0;
+    int lap_steps_ = 0;  ///< since the last line
     bool ended_ = false;
     RaceResult result_;
 };
@@ -436,7 +501,7 @@ class Run {
           random_(generator_of(fmt::format("{}/{}/run", course.name, options.sight.false_positive_rate),
                                options.sight.seed)),
           car_{.vehicle = {start_pose(course, options, random_)},
-               .speed_mps = options.with_stop ? 0.0 : options.speed_mps},
+               .speed_mps = options.with_stop || options.by_safe ? 0.0 : options.speed_mps},
           sensor_(course, options, car_.vehicle.pose.position, random_),
           transport_(options, random_),
           referee_(course, options, car_.middle()) {}
@@ -467,8 +532,8 @@ class Run {
         if (drive.is_refused) return referee_.note_refusal();
         std::vector<Point> path;
         if (drive.path.size() >= 2) {
-            drive.path = beginning(drive.path, 60.0);
-            path = sensor_.to_world(beginning(drive.path, 20.0));
+            drive.path = beginning(drive.path, kSafeAhead_m);
+            path = sensor_.to_world(drive.path);
         }
         referee_.note_answer(drive, path);
         if (options_.keep_replay) {
@@ -476,7 +541,7 @@ class Run {
             for (const Cone& cone : frame.cones) seen.push_back(cone.position);
             referee_.keep({.time_s = step * kStep_s,
                            .pose = car_.vehicle.pose,
-                           .path = std::move(path),
+                           .path = beginning(path, 20.0),
                            .seen = sensor_.to_world(std::move(seen)),
                            .state = drive.state});
         }
@@ -487,6 +552,9 @@ class Run {
     void take(Answer answer) {
         if (answer.frame_s < car_.newest_s) return;
         if (answer.drive.stop) referee_.note_stop();
+        if (options_.by_safe)  // the largest speeds, whatever the speed now
+            answer.speeds = speed_profile(lane_along(answer.drive.path), options_.limits,
+                                          {options_.limits.v_max_mps, answer.drive.safe_m});
         car_.take(std::move(answer));
     }
 
@@ -522,23 +590,6 @@ RaceFault race_fault(std::string_view name) {
 
 std::string_view to_string(RaceEnd end) {
     return kEnds[static_cast<std::size_t>(end)];
-}
-
-Driver truth_driver(const RaceCourse& course, int laps) {
-    return [&course, laps, at = CourseFoot(course, course.start_m),
-            finish_m = std::optional<double>{}](const Frame& frame) mutable {
-        at.follow(frame.pose.position, 6.0);
-        if (!finish_m) {
-            finish_m = course.finish_m.value_or(at.at_m() + laps * at.round_m()) + kStopMargin_m;
-        }
-        Drive drive;
-        const auto first = static_cast<long>(std::floor(at.at_m() / course.step_m));
-        for (long i = 0; i <= static_cast<long>(kTruthAhead_m / course.step_m); ++i) {
-            if (const std::optional<Point> point = at.place(first + i)) drive.path.push_back(*point);
-        }
-        drive.stop = at.at_m() >= *finish_m;
-        return drive;
-    };
 }
 
 RaceResult race(const RaceCourse& course, const RaceOptions& options, const Driver& driver) {

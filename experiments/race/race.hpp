@@ -1,10 +1,12 @@
 #pragma once
 
 #include "conelane/planner.hpp"
-#include "evaluation/world/condition.hpp"
+#include "conelane/speed_profile.hpp"
+#include "evaluation/world/scene_options.hpp"
 #include "experiments/race/course.hpp"
 #include "experiments/race/world.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -33,6 +35,9 @@ struct RaceOptions {
     SightOptions sight;
     int laps = 1;  ///< of a circuit
     double speed_mps = 6.0;
+    /// As fast as the path and its trusted length allow, instead of speed_mps; from a standstill.
+    bool by_safe = false;
+    VehicleLimits limits = {};
     double latency_s = 0.05;  ///< from a frame to its path; simulated, so that a race can be repeated
     /// True: it starts at rest and has to stop by itself. False: it rolls; the last lap ends the race.
     bool with_stop = false;
@@ -82,6 +87,25 @@ enum class RaceEnd {
 };
 [[nodiscard]] std::string_view to_string(RaceEnd end);
 
+/// The first lap of a race, or the others.
+struct LapFigures {
+    int laps = 0;         ///< that were completed
+    double time_s = 0.0;  ///< of those
+    /// Time of one lap of the same car, if it knows its pose and the course; absent: not measured.
+    std::optional<double> known_lap_s = {};
+    int frames = 0;           ///< with a path
+    int short_frames = 0;     ///< trusted for less than 3 m, also those without a path
+    int wrong_trusted = 0;    ///< frames whose path leaves the lane where it is trusted
+    int right_untrusted = 0;  ///< trusted for less than 3 m, though its path is right for 10 m
+    /// Of the path 5 m ahead, from the frame before; 95 of 100 are smaller.
+    std::optional<double> sideways_p95_m = {};
+    double max_curvature_1pm = 0.0;  ///< of the first 10 m of a path
+
+    [[nodiscard]] std::optional<double> time_ratio() const {
+        return laps > 0 && known_lap_s ? std::optional(time_s / laps / *known_lap_s) : std::nullopt;
+    }
+};
+
 struct RaceResult {
     RaceEnd end = RaceEnd::too_long;
     int finished_laps = 0;
@@ -100,6 +124,7 @@ struct RaceResult {
     std::optional<double> unsteady_share;  ///< of successive paths: more than 0.3 m apart within 10 m
     std::vector<std::string_view> phases;  ///< as reported, in order
     int laps_told = 0;
+    std::array<LapFigures, 2> by_lap;  ///< the first lap, and later ones
 
     std::vector<double> answer_ms;  ///< real time of each answer; without influence on the race
     std::vector<ReplayFrame> replay;
@@ -107,10 +132,6 @@ struct RaceResult {
 
     [[nodiscard]] bool finished() const { return end == RaceEnd::finished; }
 };
-
-/// A driver that returns the next 20 m of the true centre line, from the pose that the car believes, and
-/// stops behind the last line. Its map frame is that of the world: no random map frame, drift or jumps.
-[[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps);
 
 /// Drives a course by the answers of a driver. The result, without `answer_ms`, depends only on the arguments
 /// and the answers. Precondition: the course was made by a function of course.hpp.

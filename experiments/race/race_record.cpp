@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -77,6 +78,13 @@ Json flat(const std::vector<Point>& points) {
     return list;
 }
 
+/// A column of names, then columns of numbers.
+TextTable table_by_method(std::initializer_list<const char*> numbers) {
+    std::vector<TextTable::Column> columns{{"method", true}};
+    for (const char* const title : numbers) columns.push_back({title});
+    return TextTable(std::move(columns));
+}
+
 /// How far the unfinished races went; empty if there is none.
 std::string lost_table(std::span<const Heat> heats) {
     TextTable table(
@@ -112,18 +120,9 @@ Json identity(const Heat& heat) {
 }  // namespace
 
 std::string race_table(std::span<const Heat> heats, int laps) {
-    TextTable table({{"method", true},
-                     {"fp"},
-                     {"races"},
-                     {"finished %"},
-                     {"laps %"},
-                     {"m to departure"},
-                     {"hit a lap"},
-                     {"error p95 m"},
-                     {"no path %"},
-                     {"old path %"},
-                     {"unsteady %"},
-                     {"wrong path %"}});
+    TextTable table =
+        table_by_method({"fp", "races", "finished %", "laps %", "m to departure", "hit a lap", "error p95 m",
+                         "no path %", "old path %", "unsteady %", "wrong path %"});
     for (const auto& [row, races] : grouped(heats, row_of)) {
         const auto total = [&](int RaceResult::*number) {
             return static_cast<std::size_t>(sum(races, [&](const RaceResult& r) { return r.*number; }));
@@ -151,8 +150,32 @@ std::string race_table(std::span<const Heat> heats, int laps) {
     return table.text() + (lost.empty() ? "" : "\n" + lost);
 }
 
+std::string speed_table(std::span<const Heat> heats) {
+    TextTable table = table_by_method({"fp", "laps", "time ratio", "safe < 3 m %", "right of these %",
+                                       "trusted, wrong %", "sideways p95 m", "curvature 1/m"});
+    for (const auto& [row, races] : grouped(heats, row_of)) {
+        for (const std::size_t later : {0U, 1U}) {
+            const auto of_lap = [later](const auto& of) {
+                return [later, of](const RaceResult& r) { return std::invoke(of, r.by_lap[later]); };
+            };
+            const double frames = sum(races, of_lap(&LapFigures::frames));
+            if (frames == 0.0) continue;
+            const auto of_frames = [&](int LapFigures::*count) {
+                return percent(sum(races, of_lap(count)) / frames, 2);
+            };
+            table.add({row.first, fmt::format("{}", row.second), later > 0 ? "later" : "first",
+                       fixed(known(races, of_lap(&LapFigures::time_ratio)).mean(), 3),
+                       of_frames(&LapFigures::short_frames), of_frames(&LapFigures::right_untrusted),
+                       of_frames(&LapFigures::wrong_trusted),
+                       fixed(known(races, of_lap(&LapFigures::sideways_p95_m)).mean(), 3),
+                       fixed(known(races, of_lap(&LapFigures::max_curvature_1pm)).median(), 2)});
+        }
+    }
+    return table.text();
+}
+
 std::string answer_time_table(std::span<const Heat> heats) {
-    TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
+    TextTable table = table_by_method({"answer median ms", "p99 ms"});
     for (const auto& [detector, races] : grouped(heats, [](const Heat& heat) { return heat.detector; })) {
         Sample times_ms;
         for (const RaceResult* race : races) {
@@ -184,6 +207,19 @@ Json heat_json(const Heat& heat) {
                  {"unsteady_share", maybe(r.unsteady_share)},
                  {"laps_told", r.laps_told}});
     if (!r.phases.empty()) json["phases"] = r.phases;
+    for (const std::size_t later : {0U, 1U}) {
+        const LapFigures& lap = r.by_lap[later];
+        if (!lap.known_lap_s) break;
+        json[later > 0 ? "later_laps" : "first_lap"] = {{"laps", lap.laps},
+                                                        {"time_s", lap.time_s},
+                                                        {"known_course_lap_s", *lap.known_lap_s},
+                                                        {"frames", lap.frames},
+                                                        {"short_frames", lap.short_frames},
+                                                        {"right_untrusted", lap.right_untrusted},
+                                                        {"wrong_trusted", lap.wrong_trusted},
+                                                        {"sideways_p95_m", maybe(lap.sideways_p95_m)},
+                                                        {"max_curvature_1pm", lap.max_curvature_1pm}};
+    }
     return json;
 }
 

@@ -23,6 +23,10 @@ struct Heat {
 /// each course and detector, how far the unfinished races went.
 [[nodiscard]] std::string race_table(std::span<const Heat> heats, int laps);
 
+/// How fast and steady the laps were, a row for the first laps and one for the later ones of each detector
+/// and share of false positives; of races whose speed follows the trust.
+[[nodiscard]] std::string speed_table(std::span<const Heat> heats);
+
 /// Median and 99th percentile of the real time of an answer, by detector. They differ from run to run.
 [[nodiscard]] std::string answer_time_table(std::span<const Heat> heats);
 

@@ -1,8 +1,7 @@
 #include "experiments/race/world.hpp"
 
 #include "evaluation/seeded_random.hpp"
-#include "evaluation/world/false_positives.hpp"
-#include "evaluation/world/scene_draws.hpp"
+#include "evaluation/world/course.hpp"
 
 #include <algorithm>
 #include <array>
@@ -116,9 +115,8 @@ Frame World::look(const Pose& believed, const MapFrame& map, double time_s) {
     frame.pose.yaw_rad = std::remainder(frame.pose.yaw_rad, 2.0 * std::acos(-1.0));
     boost::random::normal_distribution<double> normal;
     boost::random::uniform_01<double> uniform;
-    const HalfDisc view = view_from(believed, options_.range_m);
     for (const Cone& point : points_) {
-        if (!view.contains(point.position)) continue;
+        if (!sees(believed, point.position)) continue;
         if (uniform(random_) < condition.miss_rate) continue;
         Cone seen = point;
         const double x_m = condition.noise_sigma_m * normal(random_);
@@ -129,6 +127,12 @@ Frame World::look(const Pose& believed, const MapFrame& map, double time_s) {
     if (!condition.persistent) add_fresh(frame.cones, believed, map);
     shuffle(frame.cones, random_);
     return frame;
+}
+
+bool World::sees(const Pose& believed, const Point& place) const {
+    const double bearing_rad = std::atan2(believed.left_m(place), believed.ahead_m(place));
+    return view_from(believed, options_.range_m).contains(place) &&
+           2.0 * std::abs(bearing_rad) <= options_.fov_rad + 1e-9;
 }
 
 double World::false_to(double seen) const {
@@ -170,14 +174,14 @@ void World::add_fresh(std::vector<Cone>& cones, const Pose& believed, const MapF
         const double x_m = any_m(random_);
         const double y_m = any_m(random_);
         const Point point = view.centre + Point(x_m, y_m);
-        if (!view.contains(point)) continue;
+        if (!sees(believed, point)) continue;
         cones.push_back(false_positive(map.to_map(point)));
         if (options_.with_ids) cones.back().id = new_id();
         ++i;
     }
 }
 
-void Vehicle::drive(double speed_mps, double wanted_rad, double time_s, const VehicleLimits& limits) {
+void Vehicle::drive(double speed_mps, double wanted_rad, double time_s, const SteeringLimits& limits) {
     const double target_rad = std::clamp(wanted_rad, -limits.max_steering_rad, limits.max_steering_rad);
     const double change_rad = limits.max_steering_rate_radps * time_s;
     steering_rad += std::clamp(target_rad - steering_rad, -change_rad, change_rad);
@@ -188,7 +192,7 @@ void Vehicle::drive(double speed_mps, double wanted_rad, double time_s, const Ve
 }
 
 double pursue(const Pose& car, std::span<const Point> path, double lookahead_m, double& from_m,
-              const VehicleLimits& limits) {
+              const SteeringLimits& limits) {
     if (path.size() < 2) return 0.0;
     double best_m = from_m;
     double best_distance_m = std::numeric_limits<double>::infinity();

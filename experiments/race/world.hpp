@@ -1,11 +1,12 @@
 #pragma once
 
 #include "conelane/planner.hpp"
-#include "evaluation/world/condition.hpp"
+#include "evaluation/world/scene_options.hpp"
 #include "experiments/race/course.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct SightOptions {
     Condition condition;
     double false_positive_rate = 0.0;  ///< false positives / all points in view, in [0, 0.99]
     double range_m = 20.0;
-    bool with_color = false;  ///< else every cone is of unknown color
-    bool with_ids = true;     ///< else every cone has kNoId
+    double fov_rad = std::numbers::pi;  ///< angle of view, up to pi: the half disc
+    bool with_color = false;            ///< else every cone is of unknown color
+    bool with_ids = true;               ///< else every cone has kNoId
     std::uint64_t seed = 0;
 };
 
@@ -59,6 +61,7 @@ class World {
     void add_fresh(std::vector<Cone>& cones, const Pose& believed, const MapFrame& map);
     [[nodiscard]] Cone false_positive(const Point& position);
     [[nodiscard]] double false_to(double seen) const;
+    [[nodiscard]] bool sees(const Pose& believed, const Point& place) const;
 
     const SightOptions options_;
     std::vector<Cone> points_;  ///< of the world: cones and persistent false positives
@@ -69,7 +72,7 @@ class World {
     [[nodiscard]] ConeId new_id();
 };
 
-struct VehicleLimits {
+struct SteeringLimits {
     double wheelbase_m = 1.55;
     double max_steering_rad = 0.55;  ///< turns on a radius of 2.5 m
     double max_steering_rate_radps = 2.0;
@@ -81,13 +84,13 @@ struct Vehicle {
     double steering_rad = 0.0;
 
     /// Moves on at a constant speed; the steering follows `wanted_rad` within its limits.
-    void drive(double speed_mps, double wanted_rad, double time_s, const VehicleLimits& limits = {});
+    void drive(double speed_mps, double wanted_rad, double time_s, const SteeringLimits& limits = {});
 };
 
 /// The steering angle of pure pursuit along `path`, followed from its beginning on by arc length: the far
 /// end of a U-turn may be nearer to the car. `from_m` is the arc length reached and is moved on. 0 if
 /// the path has fewer than two points.
 [[nodiscard]] double pursue(const Pose& car, std::span<const Point> path, double lookahead_m, double& from_m,
-                            const VehicleLimits& limits = {});
+                            const SteeringLimits& limits = {});
 
 }  // namespace conelane::experiments

@@ -5,14 +5,14 @@ stderr and exit code 2. The caller gives places of its own and puts the files wh
 
 import json
 import os
-import sys
 import warnings
 
 from .experiments.comparison import by_rate_figure, latency_figure
+from .experiments.solvers import times_figure
 from .experiments.speed import growth_figure
 from .load import Missing, load_results
 from .page import render
-from .records import InputError
+from .records import run
 from .theme import picture_colors, png_of
 
 # The main figures, which are PNG too, for where no page can be shown.
@@ -26,13 +26,12 @@ _MAIN = (("usable.png", "Usable lanes", lambda results: by_rate_figure(results, 
 def pictures(results):
     """(file name, bytes) of each main figure that the results can show; of several conditions, the papers'."""
     made = []
-    if not results.samples:
-        return made
-    results = results.under(results.main_condition)
+    main = results.under(results.main_condition) if results.samples else None
+    figures = [("engines.png", "Time to a proven optimum", times_figure, results)] + [(*one, main) for one in _MAIN if main]
     with picture_colors():
-        for name, title, figure_of in _MAIN:
+        for name, title, figure_of, shown in figures:
             try:
-                figure, axes = figure_of(results)
+                figure, axes = figure_of(shown)
             except Missing:
                 continue
             axes.set_title(title, loc="left", fontsize=10)
@@ -48,22 +47,14 @@ def write(path, content):
 def main(arguments):
     folder, page, published, picture_folder, tracks = arguments
     warnings.simplefilter("ignore")  # of figures too small for their labels; nobody can do anything about them
-    try:
-        results = load_results(folder)
-        if picture_folder:
-            os.makedirs(picture_folder, exist_ok=True)
-        write(page, render(results, json.loads(published), tuple(filter(None, tracks.split(",")))).encode("utf-8"))
-        if picture_folder:
-            for name, content in pictures(results):
-                write(os.path.join(picture_folder, name), content)
-    except InputError as error:
-        print(f"conelane: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"conelane: {error.filename or page}: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    results = load_results(folder)
+    if picture_folder:
+        os.makedirs(picture_folder, exist_ok=True)
+    write(page, render(results, json.loads(published), tuple(filter(None, tracks.split(",")))).encode("utf-8"))
+    if picture_folder:
+        for name, content in pictures(results):
+            write(os.path.join(picture_folder, name), content)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run(main)

@@ -19,9 +19,9 @@ _PARTS = "Claim|Protocol|Source|Published|Command"
 
 
 class Experiment:
-    def __init__(self, show, about=""):
+    def __init__(self, show):
         self.show, self.verdict = show, None
-        self.title, _, rest = (about or show.__doc__).strip().partition("\n")
+        self.title, _, rest = show.__doc__.strip().partition("\n")
         parts = re.findall(rf"^ *({_PARTS}): (.*?)(?=^ *(?:{_PARTS}): |\Z)", rest.strip(), flags=re.M | re.S)
         self.parts = {name: " ".join(text.split()) for name, text in parts}
 

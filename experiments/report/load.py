@@ -15,7 +15,7 @@ from .records import NUMBER, TEXT, WHOLE, InputError, label_of, read_json, read_
 # RLD paper's topologies, all candidates scored.
 BESIDE = ("sweep", "topologies", "candidates")
 # Files of `conelane study` that make a page without a comparison.
-STUDIES = ("optimality.jsonl", "backends.jsonl", "anytime.jsonl", "growth.jsonl", "formulations.jsonl", "relaxations.jsonl")
+STUDIES = ("optimality.jsonl", "backends.jsonl", "growth.jsonl", "formulations.jsonl", "relaxations.jsonl")
 SUCCESSES = ("ground_truth", "near_ground_truth", "too_short", "diverging_from_20")
 CATEGORIES = SUCCESSES + ("diverging_below_20", "none")
 PAPER_CONDITION = "paper"
@@ -296,7 +296,8 @@ def load_results(directory):
     if studies and not any(os.path.exists(path(name)) for name in ("run.json", "results.jsonl", "scores.jsonl")):
         _, row = next(read_lines(studies[0]), (0, {}))
         run = {key: row[key] for key in ("commit", "compiler", "machine") if key in row}
-        return Results(directory, run, [], [], {folder: [] for folder in BESIDE}, {})
+        beside = {folder: _read_beside(path(os.path.join(folder, "scores.jsonl"))) for folder in BESIDE}
+        return Results(directory, run, [], [], beside, {}, list(dict.fromkeys(sample.method for sample in beside["sweep"])))
     if not os.path.exists(path("run.json")):
         raise InputError(f"{path('run.json')}: is missing; studies without a comparison are read from {', '.join(STUDIES)}")
     run = read_json(path("run.json"))

@@ -92,17 +92,6 @@ def latency_ratio(sample, reference):
             len(rows))
 
 
-def performance_profiles(times):
-    """Dolan and Moré: from times (scenes, methods), infinite where a method failed, the ratios to the fastest
-    of each scene, sorted per method. The profile of a method at tau is the share of its ratios <= tau. Scenes
-    that no method solved stay in: they count against all."""
-    best = np.min(times, axis=1, keepdims=True)
-    solvable = np.isfinite(best)
-    ratios = np.full(times.shape, np.inf)
-    np.divide(times, best, out=ratios, where=solvable & np.isfinite(times))
-    return np.sort(ratios, axis=0)
-
-
 def disagreements(proven):
     """Of optima that several prove, by scene (infinite: there is no lane graph): how many differ, of how many that two of them prove."""
     found = {}

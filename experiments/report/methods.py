@@ -14,12 +14,8 @@ _OF_SOURCE = {
     "CLC paper, extended here": {
         "clc": "Enumerates pairs of paths through a graph of near cones under geometric constraints, the most promising "
                "first, and takes the one that a small network ranks best.",
-        "clc-warm": "clc, which starts from its last lane.",
-        "clc-no-beam": "clc without the quick search that leads it."},
-    "CLC paper": {
-        "clc-paper": "The same search with the paper's own eight features and ranking.",
-        "clc-delaunay": "clc-paper on the Delaunay triangulation of the cones."},
-    "CLC paper, cut down": {"clc-longest": "The same search; the longest lane is taken instead of ranking."},
+        "clc-warm": "clc, which starts from its last lane."},
+    "CLC paper": {"clc-paper": "The same search with the paper's own eight features and ranking."},
     "RLD paper": {
         "rld-cbc": "Chooses edges between the 12 nearest cones at the least total cost, as a binary program that CBC solves to "
                    "proven optimality.",
@@ -28,8 +24,7 @@ _OF_SOURCE = {
         "rld-pair": "The same objective on all cones, by an exact search over pairs of paths.",
         "rld-shape": "rld-pair with three more costs, for the shape of the lane: another objective, another optimum.",
         "rld-context": "Looks at 24 cones and answers for the 12 nearest.",
-        "rld-learned": "rld-pair with learned costs of edges, turns and ends; steps over missed cones.",
-        "rld-shape-context": "rld-context with the costs of the lane's shape."},
+        "rld-learned": "rld-pair with learned costs of edges, turns and ends; steps over missed cones."},
     "baseline": {"delaunay-beam": "Beam search for a centre line through the Delaunay triangulation of the cones, as the team AMZ "
                                   "drove with."},
     "baseline, after Tanzmeister et al.": {

@@ -55,17 +55,19 @@ int run(std::vector<std::string> command, bool quiet) {
 
 /// The first Python that has the modules of the report. The second place has Debian's own packages, in case
 /// another Python is first on PATH.
-std::string find_python(const std::string& wished) {
+std::string find_python(const std::string& wished, bool draws) {
     const std::vector<std::string> candidates =
         wished.empty() ? std::vector<std::string>{"python3", "/usr/bin/python3"} : std::vector{wished};
     for (const std::string& python : candidates) {
         const std::string probe =
             "import sys; from importlib.util import find_spec; "
-            "sys.exit(not (sys.version_info >= (3, 10) and find_spec('numpy') and find_spec('matplotlib')))";
+            "sys.exit(not (sys.version_info >= (3, 10)" +
+            std::string(draws ? " and find_spec('numpy') and find_spec('matplotlib')))" : "))");
         if (run({python, "-c", probe}, true) == 0) return python;
     }
-    throw NoPython("the report takes Python 3.10 or newer with matplotlib, which " +
-                   (wished.empty() ? "python3" : wished) +
+    const std::string name = wished.empty() ? "python3" : wished;
+    if (!draws) throw NoPython("the page takes Python 3.10 or newer, which " + name + " is not");
+    throw NoPython("the report takes Python 3.10 or newer with matplotlib, which " + name +
                    " has not (Debian: apt-get install python3-matplotlib)");
 }
 
@@ -97,8 +99,8 @@ void TemporaryFolder::remove() const {
 }
 
 void run_package(const std::string& module, const std::vector<std::string>& arguments,
-                 const std::string& wished_python) {
-    const std::string python = find_python(wished_python);
+                 const std::string& wished_python, bool draws) {
+    const std::string python = find_python(wished_python, draws);
     const TemporaryFolder folder;
     const std::filesystem::path archive = folder.path() / "report.zip";
     write_archive(archive);

@@ -41,11 +41,11 @@ class PackageRefused : public std::runtime_error {
 };
 
 /// Runs a module of the Python package `report` (this folder, embedded in the program) with arguments.
-/// `wished_python`: an interpreter that has matplotlib; empty: the first found. Throws PackageRefused if the
-/// module ends with exit code 2, NoPython if Python or matplotlib is missing, std::runtime_error for other
-/// failures.
+/// `wished_python`: an interpreter; empty: the first found. `draws`: it needs matplotlib. Throws
+/// PackageRefused if the module ends with exit code 2, NoPython if Python or matplotlib is missing,
+/// std::runtime_error for other failures.
 void run_package(const std::string& module, const std::vector<std::string>& arguments,
-                 const std::string& wished_python);
+                 const std::string& wished_python, bool draws = true);
 
 /// The Python package `report` of this folder as a zip archive that Python can import.
 [[nodiscard]] std::span<const unsigned char> report_archive();

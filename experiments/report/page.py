@@ -1,13 +1,13 @@
 """The page: sections in order, style and script inlined, nothing loaded from elsewhere."""
 
-import json
-import pkgutil
 from html import escape
 
 from . import experiments, gallery, headline, provenance
 from .experiment import blocks
+from .experiments.solvers import first_figure
 from .load import CATEGORIES
 from .methods import whole
+from .replay import embedded, shell
 from .scenes import read_scenes
 from .summaries import percent_label
 from .theme import METHOD_COLORS
@@ -43,11 +43,6 @@ there; point at a cone for its place. <span class="key"><span class="band-key"><
 </div>"""
 
 
-def _embedded(value):
-    """JSON that may stand in a script element."""
-    return json.dumps(value, separators=(",", ":"), allow_nan=False).replace("</", "<\\/").replace("<!--", "<\\u0021--")
-
-
 def _flat(points):
     return [round(100 * value) for point in points for value in point]
 
@@ -80,12 +75,8 @@ def _viewer(results, data):
                "frames": data.frames,
                "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES],
                "causes": gallery.CAUSE_WORDS}
-    return (f'{_part_shown(data)}{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}'
+    return (f'{_part_shown(data)}{_VIEWER}<script type="application/json" id="scene-data">{embedded(content)}'
             "</script>")
-
-
-def _asset(name):
-    return pkgutil.get_data(__package__, name).decode("utf-8")
 
 
 def _one_condition(results):
@@ -183,18 +174,7 @@ def render(results, published, tracks=()):
                        published["usual_width_m"]) if results.samples else None
     sections = _sections(results, published, data)
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
-    body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
-                   for name, _, title, content in sections)
-    return f"""<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark"><title>conelane: lanes between cones, compared</title>
-<link rel="icon" href="data:,"><style>{_asset("style.css")}</style></head>
-<body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
-<button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
-<main><div class="intro">{_intro(results, data)}</div>
-{body}</main>
-<script type="application/json" id="marks">{_asset("marks.json")}</script>
-<script>{_asset("tables.js")}</script>
-<script type="module">{_asset("drawing.mjs").replace("export ", "")}{"".join(map(_asset, ("frames.js", "viewer.js", "race.js")))}</script>
-</body></html>
-"""
+    body = [f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>' for name, _, title, content in sections]
+    # Below the headline, whose whole table is to be on the first screen. A page of studies alone begins with the figure.
+    body.insert(1 if data else 0, first_figure(results))
+    return shell("lanes between cones, compared", links, f'<div class="intro">{_intro(results, data)}</div>\n{"".join(body)}')

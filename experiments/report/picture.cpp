@@ -2,7 +2,7 @@
 
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
-#include "evaluation/world/condition.hpp"
+#include "evaluation/world/scene_options.hpp"
 #include "experiments/report/package.hpp"
 
 #include <algorithm>

@@ -5,14 +5,13 @@ checked them all, and gives a place of its own for PICTURE."""
 import json
 import math
 import pkgutil
-import sys
 import warnings
 
 import numpy as np
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from .records import InputError, label_of, read_json, read_lines
+from .records import label_of, read_json, read_lines, run
 from .scenes import boundary_points, frame_of, in_car_frame, sides_of
 from .theme import METHOD_COLORS, SURFACE, picture_colors, pyplot
 
@@ -221,16 +220,11 @@ def draw(scene_file, tracks_file, lanes_file, how):
 def main(arguments):
     scene_file, tracks_file, lanes_file, how_file, picture = arguments
     warnings.simplefilter("ignore")
-    try:
-        with picture_colors(), pyplot.rc_context({"svg.hashsalt": "conelane"}):
-            figure = draw(scene_file, tracks_file, lanes_file, read_json(how_file))
-            metadata = {"Date": None} if picture.endswith(".svg") else {"Software": None}
-            figure.savefig(picture, dpi=160, facecolor=SURFACE, metadata=metadata)
-    except InputError as error:
-        print(f"conelane: {error}", file=sys.stderr)
-        return 2
-    return 0
+    with picture_colors(), pyplot.rc_context({"svg.hashsalt": "conelane"}):
+        figure = draw(scene_file, tracks_file, lanes_file, read_json(how_file))
+        metadata = {"Date": None} if picture.endswith(".svg") else {"Software": None}
+        figure.savefig(picture, dpi=160, facecolor=SURFACE, metadata=metadata)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    run(main)

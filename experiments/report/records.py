@@ -3,12 +3,23 @@
 import json
 import math
 import re
+import sys
 
 NUMBER, WHOLE, TEXT, YES_OR_NO = (int, float), (int,), (str,), (bool,)
 
 
 class InputError(Exception):
     """Names the file and, where there is one, the line and the key."""
+
+
+def run(main):
+    """Calls main(arguments) as a program: a file that is wrong, or cannot be written, is one line on stderr and exit code 2."""
+    try:
+        main(sys.argv[1:])
+    except (InputError, OSError) as error:
+        said = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else error
+        print(f"conelane: {said}", file=sys.stderr)
+        sys.exit(2)
 
 
 def label_of(method, nearest):

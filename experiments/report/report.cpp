@@ -4,7 +4,7 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/scoring/published_figures.hpp"
-#include "evaluation/world/condition.hpp"
+#include "evaluation/world/scene_options.hpp"
 #include "experiments/report/package.hpp"
 
 #include <span>

@@ -44,9 +44,3 @@ def race_measures(races):
             "lateral_error_p95_m": of_known(median, "lateral_error_p95_m"), "unsteady": of_known(fmean, "unsteady_share"),
             "wrong": total("wrong_unflagged") / frames, "departure_m": of_known(median, "departure_m"),
             "without_path": total("frames_without_path") / frames, "old_path": total("old_path_s") / max(1e-9, total("time_s"))}
-
-
-def is_close(row):
-    """Whether what a search knew at its limit is within 1 % of the best that is known."""
-    known = row.get("best_known")
-    return row["proven"] or (known is not None and "objective" in row and row["objective"] - known <= 0.01 * max(1.0, abs(known)))

@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/version.hpp"
-#include "evaluation/outside/solver_input.hpp"
+#include "evaluation/outside/outside_solver.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 
@@ -46,16 +46,15 @@ class PermutedSession : public MilpSession {
     std::unique_ptr<MilpSession> session_;
 };
 
-std::unique_ptr<RldSolver> make_inside(const RldSolverEntry& entry, Formulation formulation) {
-    const auto milp =
-        std::ranges::find(milp_backends(), entry.name, [](const MilpBackend& b) { return b.entry.name; });
-    if (milp == milp_backends().end()) return entry.make(formulation);
+std::unique_ptr<RldSolver> make_inside(const RldSolverEntry& entry, const ProgramForm& form) {
+    const MilpBackend* const milp = find_milp_backend(entry.name);
+    if (milp == nullptr) return entry.make(form.formulation);
     return make_milp_rld_solver(
         [&backend = *milp](const BinaryProgram& program, std::uint64_t seed) -> std::unique_ptr<MilpSession> {
             if (seed == 0) return backend.load(program);
             return std::make_unique<PermutedSession>(backend, permuted(program, seed));
         },
-        formulation);
+        form);
 }
 
 }  // namespace
@@ -73,6 +72,19 @@ std::string Backend::label() const {
     return warm_start ? label + " warm" : label;
 }
 
+std::string Backend::treatment() const {
+    const std::string start = warm_start ? "the last lane as start" : "no start";
+    if (!uses_formulation()) return "no program; " + start;
+    const bool tuned = !outside && entry_of(*this).has(SolverTrait::tuned);
+    return fmt::format("{} rows, {}; settings: {}; {}",
+                       formulation == Formulation::paper ? "printed" : "tight",
+                       all_rows ? "all" : "on demand",
+                       outside ? "of its command"
+                       : tuned ? "tuned"
+                               : "defaults",
+                       start);
+}
+
 bool Backend::takes(std::size_t cones) const {
     if (outside) return true;
     const RldSolverEntry& entry = entry_of(*this);
@@ -87,14 +99,24 @@ std::vector<Backend> exact_backends() {
     return backends;
 }
 
-Backend backend_of(std::string_view name) {
+Backend backend_of(std::string_view text) {
+    std::string name(text);
+    constexpr std::string_view kAllRows = "/all-rows";
+    const std::size_t named = std::min(name.find('='), name.size());  // a command may hold anything
+    if (std::string_view(name).substr(0, named).ends_with(kAllRows)) {
+        Backend backend = backend_of(name.erase(named - kAllRows.size(), kAllRows.size()));
+        if (!backend.uses_formulation())
+            throw InvalidInput("--solvers", fmt::format("'{}' has no rows", backend.solver));
+        backend.all_rows = true;
+        return backend;
+    }
     if (const auto outside = parse_outside_solver(name)) {
         return {.solver = outside->name,
                 .formulation = outside->formulation.value_or(Formulation::tight),
                 .outside = *outside};
     }
     const std::size_t slash = std::min(name.find('/'), name.size());
-    Backend backend{std::string(name.substr(0, slash))};
+    Backend backend{name.substr(0, slash)};
     const RldSolverEntry& entry = entry_of(backend);
     if (!entry.has(SolverTrait::exact))
         throw InvalidInput("--solvers", "'" + backend.solver + "' proves no optimum");
@@ -117,7 +139,7 @@ BackendSolver::BackendSolver(const Backend& backend) {
     }
     const RldSolverEntry& entry = entry_of(backend);
     library_ = entry.library;
-    inside_ = make_inside(entry, backend.formulation);
+    inside_ = make_inside(entry, {backend.formulation, backend.all_rows});
 }
 
 std::optional<double> BackendSolver::engine_ms() const {

@@ -20,12 +20,14 @@ struct Backend {
     Formulation formulation = Formulation::tight;
     bool warm_start = false;
     std::optional<OutsideDetector> outside{};
-    bool all_rows = false;  ///< of a program from outside: one file with all rows
+    bool all_rows = false;  ///< one program with all rows, instead of rows on demand
 
     /// "cbc/tight", "cbc/tight warm", "highs/tight whole"; only the solver's name where it ignores
     /// formulations.
     [[nodiscard]] std::string label() const;
     [[nodiscard]] bool uses_formulation() const;
+    /// "tight rows, on demand; settings: tuned; no start": what a row of results says of the comparison.
+    [[nodiscard]] std::string treatment() const;
     /// Whether the solver takes cone sets of this size, 0 for any (RldSolverEntry::max_cones).
     [[nodiscard]] bool takes(std::size_t cones) const;
 };
@@ -33,10 +35,10 @@ struct Backend {
 /// Every exact solver of the registry, from nothing, those that use a formulation on the tight one.
 [[nodiscard]] std::vector<Backend> exact_backends();
 
-/// "SOLVER" or "SOLVER/FORMULATION", tight where none is named; or exec:NAME=COMMAND, exec:NAME/FORMULATION=
-/// COMMAND. Throws InvalidInput if the registry has no such exact solver, there is no such formulation, or
-/// the solver uses none.
-[[nodiscard]] Backend backend_of(std::string_view name);
+/// "SOLVER[/FORMULATION][/all-rows]", tight and rows on demand where it does not say; or the same after exec:
+/// and before =COMMAND. Throws InvalidInput if the registry has no such exact solver, there is no such
+/// formulation, or the solver uses none.
+[[nodiscard]] Backend backend_of(std::string_view text);
 
 /// A solver of a backend, ready to solve. Throws InvalidInput if the backend's solver is not in this
 /// build, and as SolverProgram does.

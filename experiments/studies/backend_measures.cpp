@@ -1,11 +1,12 @@
 #include "experiments/studies/backend_measures.hpp"
 
 #include "evaluation/scoring/statistics.hpp"
-#include "evaluation/scoring/wilcoxon.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -21,28 +22,32 @@ struct MeasuredGroup {
     std::string condition = {};  ///< empty: all scenes
 };
 
+/// 95 %, of courses drawn again.
+using Interval = std::optional<std::pair<double, double>>;
+
 struct BackendSummary : MeasuredGroup {
     std::string backend;
     std::size_t scenes = 0, runs = 0, solved = 0;
     std::size_t errors = 0, refuted = 0;  ///< of all runs of this backend
-    double geometric_ms = 0.0, par1_ms = 0.0, par2_ms = 0.0, par10_ms = 0.0, median_ms = 0.0;
-    std::size_t common = 0;                                      ///< runs that every backend solved
-    std::optional<double> common_geometric_ms;                   ///< over these
+    double geometric_ms = 0.0, par10_ms = 0.0, median_ms = 0.0;
+    Interval geometric_interval, par10_interval;
     std::optional<double> median_engine_ms;                      ///< in runs that report it
     std::optional<double> variability, spread;                   ///< medians over scenes
     std::size_t integrals = 0;                                   ///< scenes with steps and a known lane graph
     std::optional<double> primal_integral_ms, dual_integral_ms;  ///< means over these
     std::vector<double> profile;                                 ///< at profile_ratios()
     std::size_t won = 0;                                         ///< runs that it solves first
-    std::optional<std::size_t> peak_bytes;                       ///< of its block
+    double contribution_ms = 0.0;           ///< PAR10 of the virtual best without it, less that with it
+    std::optional<std::size_t> peak_bytes;  ///< of its block
 };
 
-/// Wilcoxon's test on two backends: geometric means of a scene's times, failures at the limit.
+/// A backend and the reference, on the same runs, failures at the limit.
 struct BackendPair : MeasuredGroup {
     std::string first, second;
-    std::size_t scenes = 0;  ///< whose times differ
-    double ratio = 1.0;      ///< geometric mean of first / second
-    double p_value = 1.0;
+    std::size_t courses = 0;  ///< whose means differ
+    double ratio = 1.0;       ///< geometric mean of first / second
+    Interval ratio_interval;
+    double p_value = 1.0;            ///< Wilcoxon's test on the means of courses
     double corrected_p_value = 1.0;  ///< Holm, over the pairs of this size and condition
 };
 
@@ -72,8 +77,6 @@ std::vector<double> profile_ratios() {
     return ratios;
 }
 
-constexpr double kPar1 = 1.0;
-constexpr double kPar2 = 2.0;
 constexpr double kPar10 = 10.0;
 
 /// A scene in one of its orders.
@@ -145,22 +148,14 @@ std::vector<Group> groups_of_rows(std::span<const SolveRow> rows) {
     return groups;
 }
 
-/// The times of each scene over its orders, failures at the limit.
-std::map<const AnnotatedScene*, std::vector<double>> times_by_scene(
-    const std::map<Run, const SolveRow*>& rows, std::span<const Run> runs, double limit_ms) {
-    std::map<const AnnotatedScene*, std::vector<double>> times;
-    for (const Run& run : runs) {
-        const SolverRun one = run_of(*rows.at(run), limit_ms);
-        times[run.first].push_back(one.solved ? one.time_ms : limit_ms);
-    }
-    return times;
-}
-
 void add_variability(BackendSummary& summary, const std::map<Run, const SolveRow*>& rows, double limit_ms) {
-    std::vector<Run> runs;
-    for (const auto& [run, row] : rows) runs.push_back(run);
+    std::map<const AnnotatedScene*, std::vector<double>> times_of;  // over its orders, failures at the limit
+    for (const auto& [run, row] : rows) {
+        const SolverRun one = run_of(*row, limit_ms);
+        times_of[run.first].push_back(one.solved ? one.time_ms : limit_ms);
+    }
     Sample coefficients, spreads;
-    for (const auto& [scene, times] : times_by_scene(rows, runs, limit_ms)) {
+    for (const auto& [scene, times] : times_of) {
         if (times.size() < 2) continue;
         const Variability one = variability_of(times);
         coefficients.add(one.coefficient);
@@ -196,10 +191,39 @@ std::vector<std::vector<SolverRun>> runs_by_backend(const Group& group, std::spa
     return runs;
 }
 
+std::vector<std::string> courses_of(std::span<const Run> runs) {
+    std::vector<std::string> courses;
+    for (const Run& run : runs) courses.push_back(run.first->track);
+    return courses;
+}
+
+std::vector<double> logarithms(std::vector<double> times, double shift) {
+    for (double& time : times) time = std::log(std::max(time + shift, 1e-6));
+    return times;
+}
+
+/// The exponentials of an interval's ends, less the shift.
+Interval exponential(const Interval& interval, double shift) {
+    if (!interval) return interval;
+    return std::pair(std::exp(interval->first) - shift, std::exp(interval->second) - shift);
+}
+
+void add_times(BackendSummary& summary, const std::vector<SolverRun>& runs,
+               const std::vector<std::string>& courses, double limit_ms) {
+    constexpr double kShift = kGeometricMeanShift_ms;
+    const std::vector<double> times = penalised_times_ms(runs, limit_ms);
+    const CourseMean geometric = course_mean(logarithms(times, kShift), courses);
+    summary.geometric_ms = std::exp(geometric.mean) - kShift;
+    summary.geometric_interval = exponential(geometric.interval, kShift);
+    summary.median_ms = median(times);
+    const CourseMean par10 = course_mean(penalised_times_ms(runs, limit_ms, kPar10), courses);
+    summary.par10_ms = par10.mean;
+    summary.par10_interval = par10.interval;
+}
+
 void add_summaries(const Group& group, std::span<const Run> common, double limit_ms,
                    std::vector<BackendSummary>& summaries) {
     const std::vector<std::vector<SolverRun>> runs = runs_by_backend(group, common, limit_ms);
-    const std::vector<std::size_t> by_all = solved_by_all(runs);
     const BestSolvers best = best_solvers(runs, limit_ms);
     const std::vector<std::vector<double>> profiles = performance_profiles(runs, profile_ratios());
     std::set<const AnnotatedScene*> scenes;
@@ -220,47 +244,43 @@ void add_summaries(const Group& group, std::span<const Run> common, double limit
             summary.refuted += row->refuted ? 1 : 0;
             summary.errors += row->refuted || row->status == SolveStatus::error ? 1 : 0;
         }
-        const std::vector<double> times = penalised_times_ms(runs[b], limit_ms);
-        summary.geometric_ms = shifted_geometric_mean(times, kGeometricMeanShift_ms);
-        summary.median_ms = median(times);
-        summary.par1_ms = penalised_average_ms(runs[b], limit_ms, kPar1);
-        summary.par2_ms = penalised_average_ms(runs[b], limit_ms, kPar2);
-        summary.par10_ms = penalised_average_ms(runs[b], limit_ms, kPar10);
-        summary.common = by_all.size();
-        if (!by_all.empty()) {
-            std::vector<double> of_common;
-            for (const std::size_t run : by_all) of_common.push_back(runs[b][run].time_ms);
-            summary.common_geometric_ms = shifted_geometric_mean(of_common, kGeometricMeanShift_ms);
-        }
+        add_times(summary, runs[b], courses_of(common), limit_ms);
         summary.median_engine_ms = engine_ms.median();
         summary.profile = profiles[b];
         summary.won = best.won[b];
+        if (runs.size() > 1) {
+            std::vector<std::vector<SolverRun>> others = runs;
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(b));
+            summary.contribution_ms = best_solvers(others, limit_ms).virtual_par10_ms - best.virtual_par10_ms;
+        }
         add_variability(summary, group.rows[b], limit_ms);
         add_integrals(summary, group, group.rows[b], limit_ms);
         summaries.push_back(std::move(summary));
     }
 }
 
-void add_pairs(const Group& group, std::span<const Run> common, double limit_ms,
+void add_pairs(const Group& group, std::span<const Run> common, double limit_ms, const std::string& reference,
                std::vector<BackendPair>& pairs) {
-    std::vector<std::vector<double>> logarithms;  // of each scene's geometric mean time
-    for (const auto& of_one : group.rows) {
-        auto& of_backend = logarithms.emplace_back();
-        for (const auto& [scene, times] : times_by_scene(of_one, common, limit_ms)) {
-            double sum = 0.0;
-            for (const double time : times) sum += std::log(std::max(time, 1e-6));
-            of_backend.push_back(sum / static_cast<double>(times.size()));
-        }
-    }
+    const auto named = std::ranges::find(group.backends, reference);
+    const auto second =
+        static_cast<std::size_t>(named == group.backends.end() ? 0 : named - group.backends.begin());
+    const std::vector<std::string> courses = courses_of(common);
+    std::vector<std::vector<double>> of_backend;
+    for (const std::vector<SolverRun>& runs : runs_by_backend(group, common, limit_ms))
+        of_backend.push_back(logarithms(penalised_times_ms(runs, limit_ms), 0.0));
     const std::size_t first_pair = pairs.size();
     std::vector<double> p_values;
-    for (std::size_t a = 0; a < group.backends.size(); ++a) {
-        for (std::size_t b = a + 1; b < group.backends.size(); ++b) {
-            const SignedRankTest test = signed_rank_test(logarithms[a], logarithms[b]);
-            pairs.push_back({group, group.backends[a], group.backends[b], test.pairs,
-                             std::exp(mean(logarithms[a]) - mean(logarithms[b])), test.p_value, 1.0});
-            p_values.push_back(test.p_value);
-        }
+    for (std::size_t b = 0; b < group.backends.size(); ++b) {
+        if (b == second) continue;
+        std::vector<double> differences;
+        std::ranges::transform(of_backend[b], of_backend[second], std::back_inserter(differences),
+                               std::minus());
+        const CourseMean ratio = course_mean(differences, courses);
+        const SignedRankTest test =
+            signed_rank_test(ratio.of_course, std::vector<double>(ratio.of_course.size(), 0.0));
+        pairs.push_back({group, group.backends[b], group.backends[second], test.pairs, std::exp(ratio.mean),
+                         exponential(ratio.interval, 0.0), test.p_value, 1.0});
+        p_values.push_back(test.p_value);
     }
     const std::vector<double> corrected = holm_corrected(p_values);
     for (std::size_t k = 0; k < corrected.size(); ++k) pairs[first_pair + k].corrected_p_value = corrected[k];
@@ -294,6 +314,21 @@ void add_gaps(const Group& group, double limit_ms, std::vector<BackendGap>& gaps
     }
 }
 
+/// An interval: a list in the file, two numbers in the table.
+template <typename Row>
+void add_interval(RowFields<Row>& fields, const std::string& after, Interval Row::*interval) {
+    const auto in_file = [interval](const Row& row) {
+        return row.*interval ? FieldValue(Json{(row.*interval)->first, (row.*interval)->second})
+                             : std::nullopt;
+    };
+    const auto in_table = [interval](const Row& row) {
+        return row.*interval ? fmt::format("{:.3g}-{:.3g}", (row.*interval)->first, (row.*interval)->second)
+                             : "-";
+    };
+    const auto place = std::ranges::find(fields, after, &RowField<Row>::key);
+    fields.insert(std::next(place), {{after + "_interval", in_file}, {"", in_table, Shown::number("95 %")}});
+}
+
 /// The kind of a row, and what it is of.
 template <typename Row>
 RowFields<Row> fields_of(const char* kind, const RowFields<Row>& others) {
@@ -316,7 +351,7 @@ RowFields<BackendSummary> summary_fields() {
     const auto mib = [](const Row& row) {
         return row.peak_bytes ? std::optional(static_cast<double>(*row.peak_bytes) / kMiB) : std::nullopt;
     };
-    return fields_of<Row>(
+    RowFields<Row> fields = fields_of<Row>(
         "summary",
         {{"backend", &Row::backend, Shown::text("backend")},
          {"scenes", &Row::scenes},
@@ -324,14 +359,10 @@ RowFields<BackendSummary> summary_fields() {
          {"solved", &Row::solved},
          {"", [](const Row& row) { return share(row.solved, row.runs); }, Shown::percent("solved %", 1)},
          {"errors", &Row::errors, Shown::number("errors")},
-         {"refuted", &Row::refuted},
+         {"refuted", &Row::refuted, Shown::number("refuted")},
+         {"median_ms", &Row::median_ms, Shown::fixed("median ms", 2)},
          {"geometric_ms", &Row::geometric_ms, Shown::fixed("geo ms", 2)},
-         {"par1_ms", &Row::par1_ms, Shown::fixed("PAR1 ms", 2)},
-         {"par2_ms", &Row::par2_ms, Shown::fixed("PAR2 ms", 2)},
          {"par10_ms", &Row::par10_ms, Shown::fixed("PAR10 ms", 2)},
-         {"common", &Row::common, Shown::number("by all")},
-         {"common_geometric_ms", &Row::common_geometric_ms, Shown::fixed("geo ms", 2)},
-         {"median_ms", &Row::median_ms},
          {"median_engine_ms", &Row::median_engine_ms, Shown::fixed("engine ms", 2)},
          {"variability", &Row::variability, Shown::percent("variation %", 1)},
          {"spread", &Row::spread, Shown::fixed("max/min", 2)},
@@ -340,7 +371,11 @@ RowFields<BackendSummary> summary_fields() {
          {"dual_integral_ms", &Row::dual_integral_ms, Shown::fixed("dual ms", 2)},
          {"profile", &Row::profile},
          {"won", &Row::won, Shown::number("first")},
+         {"contribution_ms", &Row::contribution_ms, Shown::fixed("adds ms", 2)},
          {"", mib, Shown::fixed("MiB", 1)}});
+    add_interval(fields, "geometric_ms", &Row::geometric_interval);
+    add_interval(fields, "par10_ms", &Row::par10_interval);
+    return fields;
 }
 
 RowFields<BackendPair> pair_fields() {
@@ -348,16 +383,18 @@ RowFields<BackendPair> pair_fields() {
     const auto short_p = [](double Row::*p) {
         return [p](const Row& row) { return fmt::format("{:.2g}", row.*p); };
     };
-    return fields_of<Row>(
+    RowFields<Row> fields = fields_of<Row>(
         "pair", {{"first", &Row::first},
                  {"second", &Row::second},
                  {"", [](const Row& row) { return row.first + " : " + row.second; }, Shown::text("pair")},
-                 {"scenes", &Row::scenes},
+                 {"courses", &Row::courses, Shown::number("courses")},
                  {"ratio", &Row::ratio, Shown::fixed("time ratio", 2)},
                  {"p_value", &Row::p_value},
                  {"", short_p(&Row::p_value), Shown::number("p")},
                  {"corrected_p_value", &Row::corrected_p_value},
                  {"", short_p(&Row::corrected_p_value), Shown::number("p (Holm)")}});
+    add_interval(fields, "ratio", &Row::ratio_interval);
+    return fields;
 }
 
 RowFields<BackendSelection> selection_fields() {
@@ -377,13 +414,13 @@ RowFields<BackendGap> gap_fields() {
                                   {"mean_dual_gap", &Row::mean_dual_gap}});
 }
 
-BackendMeasures measures_of(const SolveResults& results, double time_limit_ms) {
+BackendMeasures measures_of(const SolveResults& results, double time_limit_ms, const std::string& reference) {
     BackendMeasures measures;
     for (const Group& group : groups_of_rows(results.rows)) {
         const std::vector<Run> common = group.common_runs();
         if (common.empty()) continue;
         add_summaries(group, common, time_limit_ms, measures.summaries);
-        add_pairs(group, common, time_limit_ms, measures.pairs);
+        add_pairs(group, common, time_limit_ms, reference, measures.pairs);
         const BestSolvers best = best_solvers(runs_by_backend(group, common, time_limit_ms), time_limit_ms);
         measures.selections.push_back(
             {group, group.backends[best.single_best], best.single_par10_ms, best.virtual_par10_ms});
@@ -400,8 +437,9 @@ BackendMeasures measures_of(const SolveResults& results, double time_limit_ms) {
 
 }  // namespace
 
-void add_measures(StudyResult& result, const SolveResults& results, double time_limit_ms) {
-    const BackendMeasures measures = measures_of(results, time_limit_ms);
+void add_measures(StudyResult& result, const SolveResults& results, double time_limit_ms,
+                  const std::string& reference) {
+    const BackendMeasures measures = measures_of(results, time_limit_ms, reference);
     result.table += row_table(measures.summaries, summary_fields()) + '\n';
     if (!measures.pairs.empty()) result.table += row_table(measures.pairs, pair_fields()) + '\n';
     result.table += row_table(measures.selections, selection_fields());

@@ -1,9 +1,9 @@
 #include "conelane/invalid_input.hpp"
+#include "evaluation/formats/parameter_tag.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/studies/aslib.hpp"
 #include "experiments/studies/backend_measures.hpp"
 #include "experiments/studies/machine.hpp"
 #include "experiments/studies/solve_study.hpp"
@@ -54,51 +54,17 @@ RowFields<SolveRow> fields_of_file() {
          {"bound", [](const Row& row) { return bound_value(row.bound); }},
          {"nodes", &Row::nodes},
          {"rounds", &Row::rounds},
+         {"limit_ms", &Row::limit_ms},
          {"latency_ms", &Row::latency_ms},
          {"engine_ms", &Row::engine_ms},
          {"steps", if_any(steps_json)}});
-}
-
-/// A line for each size and backend: errors and refuted claims in every order, all else for the scenes in
-/// their original order.
-std::string backend_table(std::span<const SolveRow> rows) {
-    using Row = SolveRow;
-    const auto original = [](const Row& row) { return row.permutation == 0; };
-    const auto is_error = [](const Row& row) { return row.status == SolveStatus::error; };
-    const auto status = [&](auto is) {
-        return count_of([=](const Row& row) {
-            return original(row) && !row.refuted && !is_error(row) && std::invoke(is, row);
-        });
-    };
-    const auto of_original = [&](auto get) {
-        return [=](const Row& row) {
-            return original(row) ? std::optional<double>(std::invoke(get, row)) : std::nullopt;
-        };
-    };
-    const auto latency_ms = of_original(&Row::latency_ms);
-    const RowFields<RowGroup<Row>> fields{
-        {"", first_of(&Row::size_text), Shown::number("n")},
-        {"", first_of([](const Row& row) { return row.backend.label(); }), Shown::text("backend")},
-        {"", count_of(original), Shown::number("scenes")},
-        {"", status(&Row::is_optimal), Shown::number("optimal")},
-        {"", status(&Row::is_infeasible), Shown::number("infeasible")},
-        {"", status(std::not_fn(&Row::is_proven)), Shown::number("unproven")},
-        {"", count_of([=](const Row& row) { return is_error(row) && !row.refuted; }),
-         Shown::number("errors")},
-        {"", count_of(&Row::refuted), Shown::number("refuted")},
-        {"", mean_of(of_original(&Row::nodes)), Shown::fixed("nodes", 1)},
-        {"", median_of(latency_ms), Shown::fixed("median ms", 2)},
-        {"", quantile_of(latency_ms, 0.95), Shown::fixed("p95 ms", 2)},
-        {"", quantile_of(latency_ms, 1.0), Shown::fixed("max ms", 2)}};
-    return row_table(
-        groups_of<Row>(rows, [](const Row& row) { return std::pair(row.size, row.backend.label()); }),
-        fields);
 }
 
 const RowFields<SolveBlock> kBlockFields{{"row", [](const SolveBlock&) { return "block"; }},
                                          {"nearest", &SolveBlock::size},
                                          {"backend", &SolveBlock::backend},
                                          {"version", &SolveBlock::version},
+                                         {"treatment", &SolveBlock::treatment},
                                          {"reference_ms", &SolveBlock::reference_ms},
                                          {"peak_bytes", &SolveBlock::peak_bytes}};
 
@@ -119,8 +85,9 @@ class BackendsStudy : public SolveStudy {
         SolveStudy::add_options(command);
         command
             .add_option("--solvers", solvers_,
-                        "exact solvers: SOLVER or SOLVER/FORMULATION, separated by commas; all for every "
-                        "solver; or exec:NAME=COMMAND, a program from outside, in an argument of its own")
+                        "exact solvers: SOLVER[/FORMULATION][/all-rows], separated by commas; all for every "
+                        "solver; or exec:NAME[...]=COMMAND, a program from outside, in an argument of its "
+                        "own")
             ->capture_default_str();
         command
             .add_option("--formulations", formulations_,
@@ -131,7 +98,7 @@ class BackendsStudy : public SolveStudy {
         command.add_flag("--warm-start", warm_start_,
                          "each also from the lane graph of the scene before, its cones found again by id");
         command.add_flag("--all-rows", all_rows_,
-                         "each program from outside also on files with all rows, asked once");
+                         "each solver of programs also on one program with all rows");
         command
             .add_option("--permutations", solves_.permutations,
                         "number of additional runs of each scene without a start, with cones, rows and "
@@ -142,27 +109,58 @@ class BackendsStudy : public SolveStudy {
         add_limits_option(
             command, "--gap-limits", solves_.gap_limits_ms,
             "time limits [ms], ascending: each scene is solved again under each, for the gap over time");
-        command.add_option("--aslib", aslib_,
-                           "a folder for the runs and features of the instances as a scenario of ASlib");
+        add_limits_option(
+            command, "--then", solves_.then_ms,
+            "longer time limits [ms], ascending: each solve that the limit before ends unproven "
+            "is solved again under it");
+        command.add_option("--reference", reference_,
+                           "the backend that all others are compared with, as tables name it; the first "
+                           "without it");
+        command
+            .add_option("--stored", stored_,
+                        "rows that earlier calls wrote: what they prove, or solved as long, is not solved "
+                        "again")
+            ->delimiter(',')
+            ->excludes("--warm-start", "--gap-limits");
+        add_shard_option(command, shard_,
+                         "every N-th course from the I-th on, I from 0; join them by --stored");
     }
 
   protected:
     StudyResult aggregate(const SceneSet& set, SolveOptions solves) override {
         require_ascending("--gap-limits", solves.gap_limits_ms);
+        std::vector<double> limits_ms = solves.then_ms;
+        limits_ms.insert(limits_ms.begin(), solves.time_limit_ms);
+        require_ascending("--then", limits_ms);
         solves.backends = backends_asked_for();
-        SolveResults results = solve_scenes(set.scenes, solves);
+        const std::string parameters = tag_of("", solves.parameters).hash.value();
+        const StoredRows stored(stored_, parameters);
+        if (!stored_.empty()) solves.stored = &stored;
+        const std::vector<AnnotatedScene> scenes = of_shard(set.scenes);
+        SolveResults results = solve_scenes(scenes, solves);
         mark_refuted_claims(results.rows);
-        if (!aslib_.empty()) write_aslib_scenario(aslib_, results.rows, solves);
-        StudyResult result{backend_table(results.rows) + left_out(solves) + '\n'};
+        StudyResult result{left_out(solves)};
         result.add_rows(results.rows, fields_of_file());
+        for (Json& row : result.rows) row["parameters"] = parameters;
         result.add_rows(results.blocks, kBlockFields);
-        add_measures(result, results, solves.time_limit_ms);
+        add_measures(result, results, solves.longest_limit_ms(), reference_);
         result.table += '\n' + machine(results);
         result.errors = errors_among(results.rows);
         return result;
     }
 
   private:
+    /// Those of the shard's courses, which count in the order in which they appear.
+    [[nodiscard]] std::vector<AnnotatedScene> of_shard(const std::vector<AnnotatedScene>& scenes) const {
+        std::map<std::string, std::size_t> courses;
+        std::vector<AnnotatedScene> mine;
+        for (const AnnotatedScene& scene : scenes) {
+            const std::size_t course = courses.try_emplace(scene.track, courses.size()).first->second;
+            if (course % shard_.count == shard_.index) mine.push_back(scene);
+        }
+        return mine;
+    }
+
     [[nodiscard]] std::vector<Formulation> formulations_asked_for() const {
         std::vector<Formulation> all;
         for (const std::string& name : formulations_)
@@ -185,7 +183,8 @@ class BackendsStudy : public SolveStudy {
             for (const Backend& one : of_one) {
                 all.push_back(one);
                 if (warm_start_) all.push_back(one), all.back().warm_start = true;
-                if (all_rows_ && one.outside) all.push_back(one), all.back().all_rows = true;
+                if (all_rows_ && one.uses_formulation() && !one.all_rows)
+                    all.push_back(one), all.back().all_rows = true;
             }
         };
         for (const std::string& solver : split_detectors(solvers_)) {
@@ -194,7 +193,8 @@ class BackendsStudy : public SolveStudy {
                 continue;
             }
             const std::string name = solver.substr(0, solver.find('='));
-            add(backend_of(solver), name.find('/') != std::string::npos);
+            add(backend_of(solver),
+                name.find("/tight") != std::string::npos || name.find("/paper") != std::string::npos);
         }
         std::vector<std::string> labels;
         for (const Backend& backend : all) {
@@ -220,14 +220,15 @@ class BackendsStudy : public SolveStudy {
 
     static std::string machine(const SolveResults& results) {
         std::vector<double> reference_ms;
-        std::map<std::string, std::string> versions;
+        std::map<std::string, std::string> backends;
         for (const SolveBlock& block : results.blocks) {
             reference_ms.push_back(block.reference_ms);
-            versions.emplace(block.backend, block.version);
+            backends.emplace(block.backend,
+                             fmt::format("{} ({})", block.version.empty() ? "version unknown" : block.version,
+                                         block.treatment));
         }
         std::string lines;
-        for (const auto& [backend, version] : versions)
-            lines += fmt::format("{}: {}\n", backend, version.empty() ? "version unknown" : version);
+        for (const auto& [backend, said] : backends) lines += fmt::format("{}: {}\n", backend, said);
         lines += provenance().machine + '\n';
         if (reference_ms.empty()) return lines;
         return lines + fmt::format(
@@ -241,7 +242,9 @@ class BackendsStudy : public SolveStudy {
     std::vector<std::string> formulations_{"tight"};
     bool warm_start_ = false;
     bool all_rows_ = false;
-    std::string aslib_;
+    std::string reference_;
+    std::vector<std::string> stored_;
+    Shard shard_;
 };
 
 }  // namespace

@@ -41,9 +41,9 @@ void measure_program(const BinaryProgram& program, ProgramRow& row) {
     row.rows = program.rows.size();
     row.entries = program.entry_values.size();
     if (!row.is_optimal()) return;
-    if (const auto relaxed = relaxation_shape(program)) {
+    if (const auto relaxed = linear_relaxation(program)) {
         row.gap = (*row.objective - relaxed->optimum) / std::max(1.0, std::abs(*row.objective));
-        row.is_integral = relaxed->fractional == 0;
+        row.is_integral = relaxed->is_integral;
     }
 }
 

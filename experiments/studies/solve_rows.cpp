@@ -5,14 +5,15 @@
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/scene_set.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "experiments/studies/machine.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -41,26 +42,32 @@ class Driver {
         : backend_(backend), size_(size), options_(options), solver_(backend) {}
 
     void forget() { previous_.reset(); }
+    [[nodiscard]] bool is_warm() const { return is_warm_; }  ///< something was solved
     [[nodiscard]] BackendSolver& solver() { return solver_; }
 
-    SolveRow solve(const AnnotatedScene& annotated, const Scene& cones) {
-        std::optional<LaneGraph> start;
-        const Stopwatch watch;
-        if (previous_) start = map_by_cone_id(previous_->first, previous_->second, cones);
-        const double mapped_ms = watch.elapsed_ms();
-        SolveRow row =
-            solve(annotated, cones,
-                  {.limits = {options_.time_limit_ms - mapped_ms}, .start = start ? &*start : nullptr});
-        row.latency_ms += mapped_ms;
-        return row;
-    }
-
-    /// From nothing, in another order of cones, rows and columns.
-    SolveRow solve_permuted(const AnnotatedScene& annotated, const Scene& cones, std::size_t permutation) {
-        const std::uint64_t seed = permutation_seed(annotated.scene.id, permutation, options_.seed);
-        const Scene shuffled = with_shuffled_cones(cones, seed);
-        SolveRow row = solve(annotated, shuffled, {.limits = {options_.time_limit_ms}, .seed = seed});
-        row.permutation = permutation;
+    /// The stored row, or else a solve under each limit until one is enough. From nothing, or from the scene
+    /// before; permutations above 0 are other orders of cones, rows and columns, from nothing.
+    SolveRow solve(const AnnotatedScene& annotated, const Scene& cones, std::size_t permutation) {
+        SolveRow row{.scene = &annotated,
+                     .size = size_,
+                     .cones = cones.cones.size(),
+                     .permutation = permutation,
+                     .backend = backend_,
+                     .limit_ms = options_.longest_limit_ms()};
+        if (options_.stored != nullptr) {
+            if (auto stored = options_.stored->find(row)) return *std::move(stored);
+        }
+        if (!std::exchange(is_warm_, true)) {  // code is loaded before times are taken
+            (void)solve_within(annotated, cones, options_.time_limit_ms);
+            previous_.reset();
+        }
+        std::vector<double> limits_ms = options_.then_ms;
+        limits_ms.insert(limits_ms.begin(), options_.time_limit_ms);
+        for (const double limit_ms : limits_ms) {
+            row = permutation == 0 ? solve_within(annotated, cones, limit_ms)
+                                   : solve_permuted(annotated, cones, permutation, limit_ms);
+            if (row.is_proven() || row.status == SolveStatus::error) break;
+        }
         return row;
     }
 
@@ -68,7 +75,7 @@ class Driver {
     void add_steps(SolveRow& row, const Scene& cones) {
         for (const double limit_ms : options_.gap_limits_ms) {
             if (limit_ms >= std::min(row.latency_ms, options_.time_limit_ms)) break;
-            const SolveRow step = solve(*row.scene, cones, {.limits = {limit_ms}});
+            const SolveRow step = solve_with(*row.scene, cones, {.limits = {limit_ms}});
             if (step.status == SolveStatus::error) continue;
             const double time_ms = step.is_optimal() ? step.latency_ms : std::max(limit_ms, step.latency_ms);
             row.steps.push_back({time_ms, step.objective, step.bound});
@@ -78,7 +85,29 @@ class Driver {
     }
 
   private:
-    SolveRow solve(const AnnotatedScene& annotated, const Scene& cones, const SolveArguments& arguments) {
+    SolveRow solve_within(const AnnotatedScene& annotated, const Scene& cones, double limit_ms) {
+        std::optional<LaneGraph> start;
+        const Stopwatch watch;
+        if (previous_) start = map_by_cone_id(previous_->first, previous_->second, cones);
+        const double mapped_ms = watch.elapsed_ms();
+        SolveRow row = solve_with(annotated, cones,
+                                  {.limits = {limit_ms - mapped_ms}, .start = start ? &*start : nullptr});
+        row.limit_ms = limit_ms;
+        row.latency_ms += mapped_ms;
+        return row;
+    }
+
+    SolveRow solve_permuted(const AnnotatedScene& annotated, const Scene& cones, std::size_t permutation,
+                            double limit_ms) {
+        const std::uint64_t seed = permutation_seed(annotated.scene.id, permutation, options_.seed);
+        const Scene shuffled = with_shuffled_cones(cones, seed);
+        SolveRow row = solve_with(annotated, shuffled, {.limits = {limit_ms}, .seed = seed});
+        row.permutation = permutation;
+        return row;
+    }
+
+    SolveRow solve_with(const AnnotatedScene& annotated, const Scene& cones,
+                        const SolveArguments& arguments) {
         const double begin_ms = thread_cpu_ms();
         const auto [problem, report, solved_ms] =
             solve_scene(solver_.solver(), cones, options_.parameters, arguments);
@@ -95,6 +124,7 @@ class Driver {
                      .nodes = report.nodes,
                      .rounds = report.rounds,
                      .build_ms = report.build_ms,
+                     .limit_ms = arguments.limits.time_limit_ms,
                      .latency_ms = solved_ms,
                      .cpu_ms = thread_cpu_ms() - begin_ms,
                      .engine_ms = solver_.engine_ms()};
@@ -115,6 +145,7 @@ class Driver {
     std::size_t size_;
     const SolveOptions& options_;
     BackendSolver solver_;
+    bool is_warm_ = false;
     std::optional<std::pair<Scene, LaneGraph>> previous_;
 };
 
@@ -130,15 +161,12 @@ std::vector<const AnnotatedScene*> scenes_of_size(std::span<const AnnotatedScene
 void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedScene> scenes,
            const SolveOptions& options, ReferenceProblem* reference, SolveResults& results) {
     const std::vector<const AnnotatedScene*> wanted = scenes_of_size(scenes, size, options);
-    SolveBlock block{.size = size, .backend = backend.label(), .version = {}};
+    SolveBlock block{
+        .size = size, .backend = backend.label(), .version = {}, .treatment = backend.treatment()};
     if (reference != nullptr) block.reference_ms = reference->mean_ms();
     const std::vector<std::size_t> starts = lap_starts(scenes);
     Progress progress(fmt::format("{} n={}", backend.label(), size_name(size)), wanted.size());
     Driver driver(backend, size, options);
-    if (!wanted.empty()) {  // code is loaded before times are taken
-        (void)driver.solve(*wanted.front(), cones_of(*wanted.front(), size));
-        driver.forget();
-    }
     const std::optional<PeakMemory> memory =
         reference == nullptr ? std::nullopt : std::optional<PeakMemory>(std::in_place);
     std::size_t lap = 0;
@@ -146,18 +174,62 @@ void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedSc
         const auto place = static_cast<std::size_t>(scene - scenes.data());
         for (; lap < starts.size() && place >= starts[lap]; ++lap) driver.forget();
         const Scene cones = cones_of(*scene, size);
-        results.rows.push_back(driver.solve(*scene, cones));
+        results.rows.push_back(driver.solve(*scene, cones, 0));
         if (!backend.warm_start) {
             driver.add_steps(results.rows.back(), cones);
             for (std::size_t k = 1; k <= options.permutations; ++k)
-                results.rows.push_back(driver.solve_permuted(*scene, cones, k));
+                results.rows.push_back(driver.solve(*scene, cones, k));
         }
         progress.advance();
     }
+    if (!driver.is_warm()) return;  // all of it was stored, and so was its block
     block.version = driver.solver().version();
     block.peak_bytes = driver.solver().end();
     if (!block.peak_bytes && memory) block.peak_bytes = memory->rise_bytes();
     results.blocks.push_back(std::move(block));
+}
+
+std::size_t count_in(const JsonNode& row, std::string_view key) {
+    const auto count = row.find(key);
+    return count ? static_cast<std::size_t>(count->non_negative_integer()) : 0;
+}
+
+std::optional<double> number_in(const JsonNode& row, std::string_view key) {
+    const auto number = row.find(key);
+    return number ? std::optional(number->number()) : std::nullopt;
+}
+
+SolveRow solve_of(const JsonNode& json) {
+    using Status = SolveStatus;
+    constexpr std::array kStatuses{Status::optimal, Status::feasible, Status::infeasible, Status::stopped,
+                                   Status::error};
+    SolveRow row;
+    row.size = count_in(json, "nearest");
+    row.cones = count_in(json, "cones");
+    row.permutation = count_in(json, "permutation");
+    row.objective = number_in(json, "objective");
+    row.bound = number_in(json, "bound");
+    row.status = json.member("status").one_of(kStatuses);
+    // The study finds again what refutes a claim.
+    if (json.find("refuted")) row.status = row.objective ? Status::optimal : Status::infeasible;
+    if (const auto message = json.find("message")) row.message = message->string();
+    row.nodes = static_cast<std::int64_t>(count_in(json, "nodes"));
+    row.rounds = static_cast<int>(count_in(json, "rounds"));
+    row.latency_ms = json.member("latency_ms").non_negative_number();
+    row.engine_ms = number_in(json, "engine_ms");
+    row.limit_ms = json.member("limit_ms").non_negative_number();
+    return row;
+}
+
+SolveBlock block_of(const JsonNode& json) {
+    SolveBlock block{count_in(json, "nearest"),
+                     json.member("backend").string(),
+                     json.member("version").string(),
+                     json.member("treatment").string(),
+                     json.member("reference_ms").number(),
+                     {}};
+    if (json.find("peak_bytes")) block.peak_bytes = count_in(json, "peak_bytes");
+    return block;
 }
 
 }  // namespace
@@ -184,9 +256,39 @@ FieldValue bound_value(const std::optional<double>& bound) {
     return json.empty() ? std::nullopt : FieldValue(json["bound"]);
 }
 
+StoredRows::StoredRows(const std::vector<std::string>& files, const std::string& parameter_hash) {
+    for (const std::string& file : files) {
+        for_each_json_line(file, [&](const JsonNode& json) {
+            if (const auto kind = json.find("row")) {
+                if (kind->string() == "block") blocks_.push_back(block_of(json));
+                return;
+            }
+            if (json.member("parameters").string() != parameter_hash)
+                json.fail_in("parameters", "are others than those of this call");
+            SolveRow row = solve_of(json);
+            Key key{json.member("backend").string(), json.member("scene").string(), row.size, row.cones,
+                    row.permutation};
+            const auto [known, is_new] = rows_.try_emplace(std::move(key), row);
+            if (!is_new && row.limit_ms > known->second.limit_ms) known->second = std::move(row);
+        });
+    }
+}
+
+std::optional<SolveRow> StoredRows::find(const SolveRow& wanted) const {
+    const auto known = rows_.find(
+        {wanted.backend.label(), wanted.scene->scene.id, wanted.size, wanted.cones, wanted.permutation});
+    if (known == rows_.end()) return std::nullopt;
+    SolveRow row = known->second;
+    if (!row.is_proven() && row.limit_ms < wanted.limit_ms) return std::nullopt;
+    row.scene = wanted.scene;
+    row.backend = wanted.backend;
+    return row;
+}
+
 SolveResults solve_scenes(std::span<const AnnotatedScene> scenes, const SolveOptions& options) {
     for (const Backend& backend : options.backends) (void)backend.takes(1);
     SolveResults results;
+    if (options.stored != nullptr) results.blocks = options.stored->blocks();
     const PinnedThread pinned;
     std::optional<ReferenceProblem> reference;
     if (options.with_machine) reference.emplace();

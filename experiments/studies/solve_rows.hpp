@@ -11,9 +11,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 /// Backends on cone sets: a row for each solve. Studies of solvers are aggregations of these rows.
@@ -36,11 +38,15 @@ inline constexpr double kObjectiveTolerance = 1e-6;
 /// A bound in a file: none below everything.
 [[nodiscard]] FieldValue bound_value(const std::optional<double>& bound);
 
+class StoredRows;
+
 struct SolveOptions {
     std::vector<Backend> backends = {};
     std::vector<std::size_t> sizes = {};  ///< may contain kAllVisible
     RldParameters parameters = {};
     double time_limit_ms = 1000.0;          ///< of a solve
+    std::vector<double> then_ms = {};       ///< longer limits, ascending, each for what the one before leaves
+    const StoredRows* stored = nullptr;     ///< solves that are done; not with a warm start
     std::optional<std::size_t> limit = {};  ///< scenes of each size at most, evenly spread; all if absent
     /// The scenes of a size; empty: those that have enough cones.
     std::function<bool(const AnnotatedScene& scene, std::size_t size)> wanted = {};
@@ -52,6 +58,8 @@ struct SolveOptions {
     /// Limits below the time limit under which each scene is solved again without a start, ascending: for the
     /// gap over time [ms].
     std::vector<double> gap_limits_ms = {};
+
+    [[nodiscard]] double longest_limit_ms() const { return then_ms.empty() ? time_limit_ms : then_ms.back(); }
 };
 
 /// One solve.
@@ -71,6 +79,7 @@ struct SolveRow {
     int rounds = 0;         ///< number of times the program was solved
     std::size_t edges = 0;  ///< that (27) allows
     double build_ms = 0.0;
+    double limit_ms = 0.0;                 ///< that it was solved under
     double latency_ms = 0.0;               ///< wall clock from the scene to the answer
     double cpu_ms = 0.0;                   ///< processor time of the thread in that
     std::optional<double> engine_ms = {};  ///< measured by the solver itself
@@ -93,9 +102,28 @@ struct SolveBlock {
     std::size_t size = 0;
     std::string backend;
     std::string version;
+    std::string treatment;      ///< Backend::treatment
     double reference_ms = 0.0;  ///< ReferenceProblem just before
     /// Growth of this process, or the largest process of a program from outside.
     std::optional<std::size_t> peak_bytes = {};
+};
+
+/// Solves that earlier runs of `conelane study backends` wrote, and their blocks.
+class StoredRows {
+  public:
+    /// Throws InputError naming file, line and key, also for a solve with parameters of another hash.
+    StoredRows(const std::vector<std::string>& files, const std::string& parameter_hash);
+
+    /// The stored solve of the run that `wanted` names by scene, cones, size, backend and permutation, if it
+    /// is a proof or had at least the limit of `wanted`; of several the one with the longest limit.
+    [[nodiscard]] std::optional<SolveRow> find(const SolveRow& wanted) const;
+    [[nodiscard]] const std::vector<SolveBlock>& blocks() const { return blocks_; }
+
+  private:
+    /// Backend, scene, size, cones and permutation.
+    using Key = std::tuple<std::string, std::string, std::size_t, std::size_t, std::size_t>;
+    std::map<Key, SolveRow> rows_;
+    std::vector<SolveBlock> blocks_;
 };
 
 struct SolveResults {

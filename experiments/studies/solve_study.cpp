@@ -18,13 +18,7 @@ void SolveStudy::add_options(CLI::App& command) {
     SceneStudy::add_options(command);
     add_parameter_options(command, parameters_, "the defaults");
     if (!sizes_.empty()) {
-        command
-            .add_option("--sizes", sizes_, "cones of a scene, the nearest ahead; `all` for all visible cones")
-            ->delimiter(',')
-            ->check([](const std::string& size) {
-                return size == "all" ? std::string() : whole_number(1, kMaxCones)(size);
-            })
-            ->capture_default_str();
+        add_sizes_option(command, sizes_, "cones of a scene, the nearest ahead; `all` for all visible cones");
     }
     add_limit_option(command, solves_.limit, "scenes of each size at most, evenly spread");
     if (solves_.time_limit_ms > 0.0) add_time_limit_option(command, solves_.time_limit_ms);

@@ -23,9 +23,8 @@ StudyResult SceneStudy::run() {
 
 std::vector<std::unique_ptr<Study>> make_studies() {
     std::vector<std::unique_ptr<Study>> studies;
-    for (const auto make : {make_optimality_study, make_backends_study, make_anytime_study, make_growth_study,
-                            make_features_study, make_formulations_study, make_relaxations_study,
-                            make_confidence_and_color_study, make_front_beam_study, make_noise_study})
+    for (const auto make : {make_optimality_study, make_backends_study, make_growth_study,
+                            make_formulations_study, make_relaxations_study, make_front_beam_study})
         studies.push_back(make());
     return studies;
 }

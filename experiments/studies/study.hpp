@@ -76,14 +76,10 @@ class SceneStudy : public Study {
 /// All studies, in the order in which they are listed.
 [[nodiscard]] std::vector<std::unique_ptr<Study>> make_studies();
 
-[[nodiscard]] std::unique_ptr<Study> make_anytime_study();
 [[nodiscard]] std::unique_ptr<Study> make_backends_study();
-[[nodiscard]] std::unique_ptr<Study> make_confidence_and_color_study();
-[[nodiscard]] std::unique_ptr<Study> make_features_study();
 [[nodiscard]] std::unique_ptr<Study> make_formulations_study();
 [[nodiscard]] std::unique_ptr<Study> make_front_beam_study();
 [[nodiscard]] std::unique_ptr<Study> make_growth_study();
-[[nodiscard]] std::unique_ptr<Study> make_noise_study();
 [[nodiscard]] std::unique_ptr<Study> make_optimality_study();
 [[nodiscard]] std::unique_ptr<Study> make_relaxations_study();
 

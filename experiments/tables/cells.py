@@ -6,7 +6,7 @@ from statistics import fmean
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))  # of the package report, which reads and rounds as these tables do
 from report.records import InputError, read_json, read_lines  # noqa: E402, F401
-from report.summaries import UNKNOWN, fixed, is_close, median, percent, quantile, race_measures  # noqa: E402, F401
+from report.summaries import UNKNOWN, fixed, median, percent, quantile, race_measures  # noqa: E402, F401
 
 
 def lines_of(path):
@@ -25,6 +25,8 @@ def version_of(path):
 
 
 def rounded(value):
+    if isinstance(value, list):
+        return list(map(rounded, value))
     return round(value, 6) if isinstance(value, float) else value
 
 
@@ -50,7 +52,7 @@ def over(rows, key, weight="scenes"):
 
 def pair(shares, digits=(1, 1)):
     """Two shares in per cent; a dash without them."""
-    return percent(None) if shares is None else " / ".join(map(percent, shares, digits))
+    return percent(None) if shares is None else "/".join(map(percent, shares, digits))
 
 
 def both(row):

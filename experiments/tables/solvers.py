@@ -6,7 +6,7 @@ import random
 import re
 from statistics import fmean
 
-from cells import UNKNOWN, columns_table, grouped, is_close, lines_of, mean, median, pair, percent, provenance, quantile, rounded, share, table
+from cells import UNKNOWN, columns_table, grouped, lines_of, mean, median, pair, percent, provenance, quantile, rounded, share, table
 
 RATES = [0.0, 0.1, 0.3, 0.5]
 LANES = ["beam", "candidate", "choice", "beside"]
@@ -15,6 +15,7 @@ PROVEN = ("optimal", "infeasible")
 GAPS = [("none", 1e-6), ("to 1 %", 0.01), ("to 10 %", 0.1), ("above", math.inf)]
 DENSITIES = [4, 5, 6, 7, 10]
 EDGES = [100, 200, 300, 500, 1000]
+LIMITS_MS = [5.0, 20.0, 50.0, 100.0, 200.0, 500.0, 2000.0]
 BEAM_KEYS = ["beam", "drop", "scenes", "best_score", "first_usable", "usable", "any_usable", "iou", "median_ms", "p95_ms", "worst_ms"]
 BEAM = 15  # what front takes
 DENSE = "eufs_comp_2021"  # a course whose cones are 1.7 m apart
@@ -32,15 +33,6 @@ def backend_rows(lines):
                      "proven": sum(line["status"] in PROVEN for line in cell), "median_ms": rounded(median(times)),
                      "p95_ms": rounded(quantile(times, 0.95)), "max_ms": rounded(max(times))})
     return rows
-
-
-def size_rows(lines):
-    """The measures that the study itself prints, see docs/measures.md."""
-    versions = {line["backend"]: line.get("version", "") for line in lines if line.get("row") == "block"}
-    return [{"table": "sizes", "backend": line["backend"], "nearest": line["nearest"], "version": versions.get(line["backend"], ""),
-             "scenes": line["scenes"], "runs": line["runs"], "solved": line["solved"], "errors": line["errors"],
-             "geometric_ms": rounded(line["geometric_ms"]), "par10_ms": rounded(line["par10_ms"])}
-            for line in lines if line.get("row") == "summary" and "condition" not in line]
 
 
 def proven_rows(name, lines):
@@ -78,14 +70,22 @@ def growth_rows(lines):
     return rows
 
 
+def known_at(line, limit):
+    """Objective and bound, None where unknown, when a limit ended the search of a line of the study of backends."""
+    steps = [step for step in line["steps"] if step["time_ms"] <= 1.1 * limit + 1.0]
+    return (steps[-1].get("objective"), steps[-1].get("bound")) if steps else (None, None)
+
+
 def anytime_rows(lines):
-    """The study's own table: what is known when a limit ends the search."""
+    """What is known when a limit ends the search; the best lane graph is that of the longest limit."""
     rows = []
-    for (limit,), cell in sorted(grouped(lines, ("limit_ms",)).items()):
-        unproven = [line for line in cell if not line["proven"]]
-        close = list(filter(is_close, unproven))
-        gaps = [line["gap"] for line in unproven if "gap" in line]
-        rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": len(close),
+    cell = [line for line in lines if "scene" in line]
+    for limit in LIMITS_MS:
+        unproven = [line for line in cell if not (line["status"] in PROVEN and line["latency_ms"] <= limit)]
+        known = [(line.get("objective"), *known_at(line, limit)) for line in unproven]
+        close = sum(objective is not None and objective - best <= 0.01 * max(1.0, abs(best)) for best, objective, _ in known)
+        gaps = [max(0.0, best - bound) / max(1.0, abs(best)) for best, _, bound in known if best is not None and bound is not None]
+        rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": close,
                      "gap": rounded(median(gaps)) if gaps else None})
     return rows
 
@@ -175,12 +175,9 @@ def collect(folder):
 
     for name in ("backends", "backends_main"):
         stored["rows"] += backend_rows(lines(name))
-    stored["rows"] += size_rows(lines("backends_sizes"))
-    for name, keys in (("formulations", ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap",
-                                         "median_gap", "mean_nodes", "median_ms"]),
-                       ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"]),
-                       ("confidence", ["known", "false_positive_rate", "scenes", "accurate", "success"])):
-        stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in keys} for line in lines(name)]
+    keys = ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap", "median_gap", "mean_nodes", "median_ms"]
+    for name, of in (("formulations", keys), ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"])):
+        stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in of} for line in lines(name)]
     stored["rows"] += growth_rows(lines("growth"))
     stored["rows"] += anytime_rows(lines("anytime"))
     with open(os.path.join(runs, "verified.txt"), encoding="utf-8") as stream:
@@ -219,20 +216,11 @@ def only(**values):
 
 
 def solver_table(rows):
-    names = {"path-pair": "`path-pair`, exact search", "clp-bb/tight": "`clp-bb`, tight", "cbc/tight": "`cbc`, tight",
-             "cbc-main/tight": "`cbc-main`, tight", "cbc-main/paper": "`cbc-main`, as printed"}
+    names = {"path-pair": "`path-pair`, exact search", "clp-bb/tight": "`clp-bb`, tight", "cbc/tight": "CBC tuned (`cbc`), tight",
+             "cbc-main/tight": "CBC, defaults (`cbc-main`), tight", "cbc-main/paper": "CBC, defaults (`cbc-main`), as printed"}
     lines = pivot(rows, {only(backend=backend): label for backend, label in names.items()}, [only(nearest=size) for size in (12, 30)],
                   lambda row: f"{times('median_ms', 'p95_ms', 'max_ms')(row)} ({row['proven']} of {row['scenes']})", "")
     return table(["solver", "n = 12", "n = 30"], lines + [["RLD paper (Mosek, its own machine)", "mean 71.8, p95 156", ""]])
-
-
-def size_table(rows):
-    sizes = sorted({row["nearest"] for row in rows}, key=lambda size: size or math.inf)  # 0: all visible cones
-    versions = {row["backend"]: row["version"] for row in reversed(rows)}
-    lines = pivot(rows, {only(backend=row["backend"]): row["backend"] for row in rows}, [only(nearest=size) for size in sizes],
-                  lambda row: f"{milliseconds(row['geometric_ms'])} / {milliseconds(row['par10_ms'])} ({percent(row['solved'] / row['runs'])} %)")
-    return table(["solver, formulation", "version", *(f"n = {size}" if size else "all visible" for size in sizes)],
-                 [[f"`{backend}`", versions[backend], *cells] for backend, *cells in lines])
 
 
 def formulation_table(rows):
@@ -295,15 +283,6 @@ def proven_table(rows):
                        lambda row: f"{percent(row['proven'])} ({percent(row['proven_without_dense'])})"))
 
 
-def confidence_table(rows):
-    rates = sorted({row["false_positive_rate"] for row in rows})
-    labels = {only(known=row["known"]): row["known"] for row in rows}
-    accurate, success = ([only(false_positive_rate=rate) for rate in some] for some in (rates, rates[-1:]))
-    header = [f"accurate at {percent(rate, 0 if rate in (0.0, 0.5) else 1)} %" for rate in rates]
-    return table(["", *header, f"success at {percent(rates[-1], 0)} %"],
-                 [first + last[1:] for first, last in zip(pivot(rows, labels, accurate, share("accurate")), pivot(rows, labels, success, share("success")))])
-
-
 def exactness_table(rows):
     labels = {"scenes with both": "{scenes} of {of}".format_map, "the candidate is the optimum, % of these": share("equal"),
               "success of the optimum, %": share("optimum"), "success of that candidate, %": share("candidate"),
@@ -330,12 +309,12 @@ def gap_table(rows):
                  lines)
 
 
-TABLES = {"solvers": ("backends", solver_table), "solvers by size": ("sizes", size_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
+TABLES = {"solvers": ("backends", solver_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
           "growth of path-pair": ("growth", growth_table), "growth by density": ("growth by density", lambda rows: class_table(rows, "density")),
           "growth by edges": ("growth by edges", lambda rows: class_table(rows, "edges")), "within a limit": ("anytime", anytime_table),
           "certificates": ("certificates", certificate_table), "width of the beam": ("beam", beam_table),
           "proven by path-pair": ("proven", proven_table),
-          "confidence and colour": ("confidence", confidence_table), "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
+          "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
           "exactness by gap": ("gaps", gap_table)}
 
 

@@ -4,7 +4,7 @@
     tables.py write FILE...       the tables between their markers, and a copy of each file in docs/benchmarks/
     tables.py check               whether the pages say what the files in docs/benchmarks/ say; exit code 1 if not
 
-KIND is held_out, shipped or solvers; experiments/tables/KIND makes the runs. The KIND reproduce is about the whole run of experiments/reproduce.
+KIND is held_out, shipped, solvers or engines; experiments/tables/KIND makes the runs. The KIND reproduce is about the whole run of experiments/reproduce.
 A table stands between `<!-- table NAME -->` and `<!-- end of table -->`. All figures are to be of one commit, that of the whole run.
 """
 
@@ -13,9 +13,8 @@ import os
 import re
 import sys
 
-import beam_picture
+import engines
 import held_out
-import parameter_sets
 import reproduce
 import shipped
 import solvers
@@ -23,10 +22,9 @@ from cells import InputError, read_json, table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STORED = os.path.join(ROOT, "docs", "benchmarks")
-PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
+PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/rld.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
 JUDGE = os.path.join(STORED, "course_judge.json")  # the record of a judge that is not in the project any more
-KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "reproduce": reproduce}
-BEAM_PICTURE = os.path.join(ROOT, "docs", "learned-costs.svg")
+KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "engines": engines, "reproduce": reproduce}
 
 BLOCK = re.compile(r"(<!-- table (?P<name>[^>]*?) -->\n).*?(<!-- end of table -->)", flags=re.S)
 
@@ -69,14 +67,15 @@ def all_tables(stored):
         texts |= module.tables(stored[kind])
         runs |= stored[kind].get("runs", {})
     judge = read_json(JUDGE)
-    return texts | parameter_sets.tables(ROOT) | {"judge of twelve cones": held_out.judge_table(judge), "runs": runs_table(runs | judge["runs"])}
+    return texts | {"judge of twelve cones": held_out.judge_table(judge), "runs": runs_table(runs | judge["runs"])}
 
 
 def strangers(stored):
-    """The runs that are not of the commit of the whole run, where there was a whole run."""
+    """The runs that are not of the commit of the whole run, where there was a whole run. Engines may be measured again by themselves, as more of
+    them come; their table says of which commit they are."""
     commit = stored["reproduce"].get("commit")
     return [f"docs/benchmarks/{kind}.json: the run '{name}' is of commit {run['commit']}, the whole run of {commit}: experiments/reproduce makes all again"
-            for kind in KINDS for name, run in stored[kind].get("runs", {}).items() if commit is not None and run["commit"] != commit]
+            for kind in KINDS if kind != "engines" for name, run in stored[kind].get("runs", {}).items() if commit is not None and run["commit"] != commit]
 
 
 def filled(text, tables, page):
@@ -95,18 +94,11 @@ def text_of(stored):
                                for key, value in stored.items()) + "\n}\n")
 
 
-def shows_the_beam(stored):
-    """Whether the picture of the beam has the stored figures, if there are any."""
-    return beam_picture.points(stored["solvers"]) in ({}, beam_picture.points_in(read(BEAM_PICTURE)))
-
-
 def write_pages(files):
     """The figures of the files by their kind, then the pages; nothing is written if they do not make all tables."""
     stored = stored_figures() | {kind: json.loads(text) for kind, text in files.items()}
     tables = all_tables(stored)
     pages = {os.path.join(ROOT, page): filled(read(os.path.join(ROOT, page)), tables, page) for page in PAGES}
-    if not shows_the_beam(stored):
-        pages[BEAM_PICTURE] = beam_picture.picture(stored["solvers"])
     for path, text in [(stored_file(kind), text) for kind, text in files.items()] + list(pages.items()):
         write(path, text)
 
@@ -119,8 +111,6 @@ def check():
     wrong = [f"{page}: a table is not what docs/benchmarks/ says; `experiments/tables/tables.py write` makes it again"
              for page, text in pages.items() if filled(text, tables, page) != text]
     wrong += [f"no page has the table '{name}'" for name in tables if name not in named]
-    if not shows_the_beam(stored):
-        wrong.append("docs/learned-costs.svg is not what docs/benchmarks/ says; `experiments/tables/tables.py write` makes it again")
     wrong += strangers(stored)
     print("\n".join(wrong) or f"{len(named)} tables are what docs/benchmarks/ says")
     return 1 if wrong else 0

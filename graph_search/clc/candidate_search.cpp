@@ -1,12 +1,10 @@
 #include "graph_search/clc/candidate_search.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -21,27 +19,25 @@ void require(bool valid, const std::string& key, const std::string& reason) {
 
 void validate(const CandidateSearchOptions& options) {
     const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+    const auto not_negative = [](double value) { return std::isfinite(value) && value >= 0.0; };
+    const auto& [phi_max_rad, w_min_m, w_max_m] = options.bounds;
+    const StartVertexRules& start = options.start;
     require(options.iteration_limit > 0, "iteration_limit", "must be positive");
     require(options.memory_limit_bytes > 0, "memory_limit_bytes", "must be positive");
     require(options.starting_pairs > 0, "starting_pairs", "must be positive");
     require(options.beam_width > 0, "beam_width", "must be positive");
     if (options.step_scores) validate(*options.step_scores);
     require(positive(options.d_max_m), "d_max", "must be positive");
-    require(options.bounds.phi_max_rad > 0.0 && options.bounds.phi_max_rad <= std::numbers::pi, "phi_max",
-            "must be in (0, pi]");
-    require(std::isfinite(options.bounds.w_min_m) && options.bounds.w_min_m >= 0.0, "w_min",
-            "must not be negative");
-    require(std::isfinite(options.bounds.w_max_m) && options.bounds.w_max_m > options.bounds.w_min_m, "w_max",
-            "must be above w_min");
-    require(positive(options.start.radius_m), "radius", "must be positive");
-    require(positive(options.start.radius_growth_m), "radius_growth", "must be positive");
-    require(std::isfinite(options.start.largest_radius_m) &&
-                options.start.largest_radius_m >= options.start.radius_m,
+    require(phi_max_rad > 0.0 && phi_max_rad <= std::numbers::pi, "phi_max", "must be in (0, pi]");
+    require(not_negative(w_min_m), "w_min", "must not be negative");
+    require(std::isfinite(w_max_m) && w_max_m > w_min_m, "w_max", "must be above w_min");
+    require(positive(start.radius_m), "radius", "must be positive");
+    require(positive(start.radius_growth_m), "radius_growth", "must be positive");
+    require(std::isfinite(start.largest_radius_m) && start.largest_radius_m >= start.radius_m,
             "largest_radius", "must not be below radius");
-    require(std::isfinite(options.start.distance_weight) && options.start.distance_weight >= 0.0,
-            "distance_weight", "must not be negative");
-    require(std::isfinite(options.next_vertex_distance_weight) && options.next_vertex_distance_weight >= 0.0,
-            "next_vertex_distance_weight", "must not be negative");
+    require(not_negative(start.distance_weight), "distance_weight", "must not be negative");
+    require(not_negative(options.next_vertex_distance_weight), "next_vertex_distance_weight",
+            "must not be negative");
 }
 
 CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : options_(options) {
@@ -68,7 +64,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
 
     points_.clear();
     for (const Cone& cone : scene.cones) points_.push_back(cone.position);
-    if (graph_.build(points_, options_.d_max_m, options_.edge_rule, budget_)) {
+    if (graph_.build(points_, options_.d_max_m, budget_)) {
         reach_.reset(graph_, options_.nearest_neighbours);
         rules_.reach = &reach_;
         next_vertex_.reset(graph_, options_.next_vertex_distance_weight / options_.d_max_m, &reach_);
@@ -133,7 +129,7 @@ bool CandidateSearch::find_beam_guide(const Scene& scene, Report& report) {
     const std::size_t best = beam_.run(half);
     if (half.stopped_by) report.stopped_by = half.stopped_by;
     if (best == LaneBeam::kNone) return false;
-    beam_.vertices(best, beam_guide_);
+    beam_guide_ = beam_.vertices(best, std::move(beam_guide_));
     return true;
 }
 
@@ -192,11 +188,11 @@ void CandidateSearch::add_scene_features(const Scene& scene) {
 
 Lane CandidateSearch::lane(const PathPair& pair, const Scene& scene) {
     Lane lane;
+    vertices_ = pairs_.vertices(pair, std::move(vertices_));
     for (const Side side : {kLeft, kRight}) {
-        pairs_.vertices(pair, side, side_);
         std::vector<ConeId>& ids = side == kLeft ? lane.left : lane.right;
-        ids.reserve(side_.size());
-        for (const Vertex vertex : side_) ids.push_back(scene.cones[vertex].id);
+        ids.reserve(vertices_[side].size());
+        for (const Vertex vertex : vertices_[side]) ids.push_back(scene.cones[vertex].id);
     }
     lane.closed = pair.closed;
     return lane;

@@ -25,7 +25,6 @@ namespace conelane {
 struct CandidateSearchOptions {
     std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2, for all starting pairs together
     double d_max_m = 5.5;                 ///< largest distance of consecutive cones
-    EdgeRule edge_rule;                   ///< absent: all pairs within d_max, equation (2)
     /// A boundary goes on to this many nearest neighbours of a cone only, see StepReach. 0: to all, as in the
     /// paper.
     std::size_t nearest_neighbours = 0;
@@ -118,11 +117,11 @@ class CandidateSearch {
     PathPairVertices remaining_;
     LaneBeam beam_;
     PathPairVertices beam_guide_;
-    std::vector<Seed> seeds_;  ///< the first seed_count_ are in use; the others keep their memory
+    PathPairVertices vertices_;  ///< scratch
+    std::vector<Seed> seeds_;    ///< the first seed_count_ are in use; the others keep their memory
     std::size_t seed_count_ = 0;
     PathPairEnumeration enumeration_;
     PathPairs pairs_;
-    std::vector<Vertex> side_;
     std::vector<Point> points_;
 };
 

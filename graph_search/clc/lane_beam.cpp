@@ -1,16 +1,13 @@
 #include "graph_search/clc/lane_beam.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "graph_search/clc/deciders.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -103,14 +100,7 @@ constexpr Vertex kNoVertex = ~Vertex{0};
 constexpr unsigned kNeighbourhoodShift = 22;
 
 /// Bits of a state; beyond so many vertices some share a bit.
-constexpr std::size_t kBits = 64 * std::tuple_size_v<decltype(LaneBeam::State::bits)>;
-
-std::size_t word_of(Vertex vertex) {
-    return vertex % kBits / 64;
-}
-std::uint64_t bit_of(Vertex vertex) {
-    return std::uint64_t{1} << (vertex % 64);
-}
+constexpr std::size_t kBits = decltype(LaneBeam::State::bits){}.size();
 
 }  // namespace
 
@@ -244,13 +234,7 @@ std::size_t LaneBeam::run(SearchBudget& budget) {
     return best_.parent == kNone ? kNone : extend(best_.parent, best_.vertex);
 }
 
-PathPairVertices LaneBeam::vertices(std::size_t number) const {
-    PathPairVertices both;
-    vertices(number, both);
-    return both;
-}
-
-void LaneBeam::vertices(std::size_t number, PathPairVertices& vertices) const {
+PathPairVertices LaneBeam::vertices(std::size_t number, PathPairVertices vertices) const {
     for (std::vector<Vertex>& side : vertices) side.clear();
     for (; states_[number].parent != kNone; number = states_[number].parent) {
         const State& state = states_[number];
@@ -260,6 +244,7 @@ void LaneBeam::vertices(std::size_t number, PathPairVertices& vertices) const {
         vertices[side].push_back(states_[number].last[side]);
         std::ranges::reverse(vertices[side]);
     }
+    return vertices;
 }
 
 Side LaneBeam::next_side(const State& state) const {
@@ -278,7 +263,7 @@ std::size_t LaneBeam::add_start(StartPair start) {
     const Point across = graph_->position(start.left) - graph_->position(start.right);
     State state{};
     state.last = {start.left, start.right};
-    for (const Vertex vertex : {start.left, start.right}) state.bits[word_of(vertex)] |= bit_of(vertex);
+    for (const Vertex vertex : {start.left, start.right}) state.bits.set(vertex % kBits);
     state.before = state.last;
     state.direction = {heading_, heading_};
     state.vertices = {1, 1};
@@ -440,7 +425,7 @@ std::size_t LaneBeam::add_state(std::size_t number, Side side, const Step& step,
     State state = states_[number];
     state.before[side] = state.last[side];
     state.last[side] = step.vertex;
-    state.bits[word_of(step.vertex)] |= bit_of(step.vertex);
+    state.bits.set(step.vertex % kBits);
     state.direction[side] = step.direction;
     state.segment_m[side] = step.segment_m;
     state.turn_rad[side] = step.turn_rad;
@@ -456,7 +441,7 @@ std::size_t LaneBeam::add_state(std::size_t number, Side side, const Step& step,
 }
 
 bool LaneBeam::is_on_lane(std::size_t number, Vertex vertex) const {
-    if ((states_[number].bits[word_of(vertex)] & bit_of(vertex)) == 0) return false;
+    if (!states_[number].bits[vertex % kBits]) return false;
     if (graph_->vertex_count() <= kBits) return true;
     for (; number != kNone; number = states_[number].parent) {
         const std::array<Vertex, 2>& last = states_[number].last;

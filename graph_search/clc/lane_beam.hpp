@@ -9,9 +9,9 @@
 #include "graph_search/shared/search_graph.hpp"
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -93,9 +93,9 @@ class LaneBeam {
         double width_m;
         double length_m;  ///< of both sides
         double score;
-        std::size_t parent;                 ///< kNone: a starting pair
-        Side pushed;                        ///< the side that was extended to get here
-        std::array<std::uint64_t, 8> bits;  ///< of the lane's vertices, see is_on_lane
+        std::size_t parent;     ///< kNone: a starting pair
+        Side pushed;            ///< the side that was extended to get here
+        std::bitset<512> bits;  ///< of the lane's vertices, see is_on_lane
         StepMeasures step;
     };
     static constexpr std::size_t kNone = ~std::size_t{0};
@@ -115,9 +115,8 @@ class LaneBeam {
     /// Best first.
     [[nodiscard]] std::span<const std::size_t> level() const { return level_; }
     [[nodiscard]] const State& state(std::size_t number) const { return states_[number]; }
-    [[nodiscard]] PathPairVertices vertices(std::size_t number) const;
-    /// The same, into `vertices`.
-    void vertices(std::size_t number, PathPairVertices& vertices) const;
+    /// `vertices` gives its memory.
+    [[nodiscard]] PathPairVertices vertices(std::size_t number, PathPairVertices vertices = {}) const;
     /// The side that the state grows by.
     [[nodiscard]] Side next_side(const State& state) const;
 

@@ -1,85 +1,42 @@
 #include "graph_search/clc/lane_features.hpp"
 
 #include "graph_search/clc/deciders.hpp"
-#include "graph_search/clc/lane_width.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
 namespace conelane {
 namespace {
 
 /// In the order of LaneFeature.
-constexpr std::array<std::string_view, kLaneFeatureCount> kNames{"length_m",
-                                                                 "cones_left",
-                                                                 "cones_right",
-                                                                 "width_variance_m2",
-                                                                 "segment_length_variance_m2_left",
-                                                                 "segment_length_variance_m2_right",
-                                                                 "turn_variance_rad2_left",
-                                                                 "turn_variance_rad2_right",
-                                                                 "longest_share",
-                                                                 "start_asymmetry_m",
-                                                                 "start_distance_m",
-                                                                 "cones",
-                                                                 "end_deviation",
-                                                                 "cones_inside",
-                                                                 "mean_degree",
-                                                                 "sharpest_turn_rad",
-                                                                 "sharpest_turn_change_rad",
-                                                                 "longest_segment_m",
-                                                                 "mean_squared_skew",
-                                                                 "mean_across_m",
-                                                                 "across_variance_m2",
-                                                                 "mean_segment_length_m_left",
-                                                                 "mean_segment_length_m_right",
-                                                                 "absolute_mean_turn_rad_left",
-                                                                 "absolute_mean_turn_rad_right",
-                                                                 "mean_squared_turn_change_rad2_left",
-                                                                 "mean_squared_turn_change_rad2_right",
-                                                                 "shortest_segment_m",
-                                                                 "start_skew",
-                                                                 "cones_beside",
-                                                                 "end_turn_rad",
-                                                                 "end_segment_m",
-                                                                 "end_turn_change_rad",
-                                                                 "largest_offset_m",
-                                                                 "rms_offset_m",
-                                                                 "largest_skew",
-                                                                 "narrowest_m",
-                                                                 "widest_m",
-                                                                 "largest_width_change_m",
-                                                                 "near_sharpest_turn_rad",
-                                                                 "near_sharpest_turn_change_rad",
-                                                                 "near_rms_turn_change_rad",
-                                                                 "near_largest_offset_m",
-                                                                 "near_rms_offset_m",
-                                                                 "near_largest_segment_change_m",
-                                                                 "near_rms_segment_change_m",
-                                                                 "near_longest_segment_m",
-                                                                 "near_shortest_segment_m",
-                                                                 "near_largest_skew",
-                                                                 "near_rms_skew",
-                                                                 "near_curvature_difference_rad_per_m",
-                                                                 "near_cones_inside",
-                                                                 "near_cones_beside",
-                                                                 "near_cones_close",
-                                                                 "near_closeness",
-                                                                 "near_vertices",
-                                                                 "near_narrowest_m",
-                                                                 "near_widest_m",
-                                                                 "near_mean_width_m",
-                                                                 "near_width_deviation_m",
-                                                                 "near_largest_width_change_m",
-                                                                 "near_rms_width_change_m",
-                                                                 "start_lead_m",
-                                                                 "start_shift_m",
-                                                                 "start_nearest_side_m",
-                                                                 "start_nearest_ahead_m",
-                                                                 "start_farthest_ahead_m"};
+constexpr std::array<std::string_view, kLaneFeatureCount> kNames{
+    // Of the paper.
+    "length_m", "cones_left", "cones_right", "width_variance_m2", "segment_length_variance_m2_left",
+    "segment_length_variance_m2_right", "turn_variance_rad2_left", "turn_variance_rad2_right",
+    // Of the whole lane and its start.
+    "longest_share", "start_asymmetry_m", "start_distance_m", "cones", "end_deviation", "cones_inside",
+    "mean_degree", "sharpest_turn_rad", "sharpest_turn_change_rad", "longest_segment_m", "mean_squared_skew",
+    "mean_across_m", "across_variance_m2", "mean_segment_length_m_left", "mean_segment_length_m_right",
+    "absolute_mean_turn_rad_left", "absolute_mean_turn_rad_right", "mean_squared_turn_change_rad2_left",
+    "mean_squared_turn_change_rad2_right", "shortest_segment_m", "start_skew", "cones_beside", "end_turn_rad",
+    "end_segment_m", "end_turn_change_rad", "largest_offset_m", "rms_offset_m", "largest_skew", "narrowest_m",
+    "widest_m", "largest_width_change_m",
+    // Of the near part.
+    "near_sharpest_turn_rad", "near_sharpest_turn_change_rad", "near_rms_turn_change_rad",
+    "near_largest_offset_m", "near_rms_offset_m", "near_largest_segment_change_m",
+    "near_rms_segment_change_m", "near_longest_segment_m", "near_shortest_segment_m", "near_largest_skew",
+    "near_rms_skew", "near_curvature_difference_rad_per_m", "near_cones_inside", "near_cones_beside",
+    "near_cones_close", "near_closeness", "near_vertices", "near_narrowest_m", "near_widest_m",
+    "near_mean_width_m", "near_width_deviation_m", "near_largest_width_change_m", "near_rms_width_change_m",
+    // Of the two first cones.
+    "start_lead_m", "start_shift_m", "start_nearest_side_m", "start_nearest_ahead_m",
+    "start_farthest_ahead_m"};
 static_assert(kNames[kLength] == "length_m" && kNames[kSceneCones] == "cones" &&
-              kNames[kMinWidth] == "narrowest_m" && kNames[kStartFarthestAhead] == "start_farthest_ahead_m");
+              kNames[kMinWidth] == "narrowest_m" && kNames[kNearSteps] == "near_sharpest_turn_rad" &&
+              kNames[kNearWidths] == "near_narrowest_m" &&
+              kNames[kStartFarthestAhead] == "start_farthest_ahead_m");
 
 /// Distance of the third of five points along a boundary, across the chord of its neighbours, from the cubic
 /// through the other four at even steps [m].
@@ -88,6 +45,15 @@ double offset_m(const std::array<Point, 5>& along) {
     const Point chord = along[3] - along[1];
     const double chord_m = chord.norm();
     return chord_m == 0.0 ? 0.0 : std::abs(cross(chord, along[2] - expected)) / chord_m;
+}
+
+double rms(const Moments& moments) {
+    return std::sqrt(moments.mean_of_squares());
+}
+
+/// Sets features that stand next to each other.
+void set(LaneFeatures& features, LaneFeature first, std::initializer_list<double> values) {
+    std::ranges::copy(values, features.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
 double curvature(double turned_rad, double length_m) {
@@ -252,27 +218,17 @@ LaneFeatures LaneGrowth::features() const {
     features[kEndSegment] = std::max(left.last_segment_m, right.last_segment_m);
     features[kEndTurnChange] = last_turn_change_rad_;
     features[kMaxOffset] = whole_.largest_offset_m;
-    features[kRmsOffset] = std::sqrt(whole_.offsets_m.mean_of_squares());
+    features[kRmsOffset] = rms(whole_.offsets_m);
     features[kMaxSkew] = whole_.largest_skew;
-    features[kNearSharpestTurn] = near_.sharpest_turn_rad;
-    features[kNearSharpestTurnChange] = near_.sharpest_turn_change_rad;
-    features[kNearRmsTurnChange] = std::sqrt(near_.turn_changes.mean_of_squares());
-    features[kNearLargestOffset] = near_.largest_offset_m;
-    features[kNearRmsOffset] = std::sqrt(near_.offsets_m.mean_of_squares());
-    features[kNearLargestSegmentChange] = near_.largest_segment_change_m;
-    features[kNearRmsSegmentChange] = std::sqrt(near_.segment_changes_m.mean_of_squares());
-    features[kNearLongestSegment] = near_.longest_segment_m;
-    features[kNearShortestSegment] = near_.shortest_segment_m;
-    features[kNearLargestSkew] = near_.largest_skew;
-    features[kNearRmsSkew] = std::sqrt(near_.skew.mean_of_squares());
-    features[kNearCurvatureDifference] =
-        std::abs(curvature(near_.turned_rad[kLeft], near_.length_m[kLeft]) -
-                 curvature(near_.turned_rad[kRight], near_.length_m[kRight]));
-    features[kNearConesInside] = near_.cones.inside;
-    features[kNearConesBeside] = near_.cones.beside;
-    features[kNearConesClose] = near_.cones.close;
-    features[kNearCloseness] = near_.cones.closeness;
-    features[kNearVertices] = static_cast<double>(near_.steps[kLeft] + near_.steps[kRight] + 2);
+    set(features, kNearSteps,
+        {near_.sharpest_turn_rad, near_.sharpest_turn_change_rad, rms(near_.turn_changes),
+         near_.largest_offset_m, rms(near_.offsets_m), near_.largest_segment_change_m,
+         rms(near_.segment_changes_m), near_.longest_segment_m, near_.shortest_segment_m, near_.largest_skew,
+         rms(near_.skew),
+         std::abs(curvature(near_.turned_rad[kLeft], near_.length_m[kLeft]) -
+                  curvature(near_.turned_rad[kRight], near_.length_m[kRight])),
+         near_.cones.inside, near_.cones.beside, near_.cones.close, near_.cones.closeness,
+         static_cast<double>(near_.steps[kLeft] + near_.steps[kRight] + 2)});
     return features;
 }
 
@@ -310,12 +266,9 @@ void add_width_features(const OnlineLaneWidth& width, const std::array<std::size
     lane[kMinWidth] = whole.narrowest_m;
     lane[kMaxWidth] = whole.widest_m;
     lane[kMaxWidthChange] = whole.largest_change_m;
-    lane[kNearNarrowest] = near.narrowest_m;
-    lane[kNearWidest] = near.widest_m;
-    lane[kNearMeanWidth] = near_widths.mean();
-    lane[kNearWidthDeviation] = std::sqrt(near_widths.variance());
-    lane[kNearLargestWidthChange] = near.largest_change_m;
-    lane[kNearRmsWidthChange] = std::sqrt(near_changes.mean_of_squares());
+    set(lane, kNearWidths,
+        {near.narrowest_m, near.widest_m, near_widths.mean(), std::sqrt(near_widths.variance()),
+         near.largest_change_m, rms(near_changes)});
 }
 
 }  // namespace conelane

@@ -4,7 +4,6 @@
 #include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/shared/moments.hpp"
 #include "graph_search/shared/search_graph.hpp"
-#include "model/geometry.hpp"
 
 #include <array>
 #include <cstddef>
@@ -75,34 +74,13 @@ enum LaneFeature : std::size_t {
     kMinWidth,
     kMaxWidth,
     kMaxWidthChange,
-    // Of the near part only.
-    kNearSharpestTurn,
-    kNearSharpestTurnChange,
-    kNearRmsTurnChange,
-    kNearLargestOffset,
-    kNearRmsOffset,
-    kNearLargestSegmentChange,
-    kNearRmsSegmentChange,
-    kNearLongestSegment,
-    kNearShortestSegment,
-    kNearLargestSkew,
-    kNearRmsSkew,
-    kNearCurvatureDifference,
-    kNearConesInside,
-    kNearConesBeside,
-    // Within kClose_m of a segment; weighted from 1 on the segment to 0 at kBeside_m.
-    kNearConesClose,
-    kNearCloseness,
-    kNearVertices,
-    kNearNarrowest,
-    kNearWidest,
-    kNearMeanWidth,
-    kNearWidthDeviation,
-    kNearLargestWidthChange,
-    kNearRmsWidthChange,
+    // Of the near part only: 17 of its steps and 6 of its widths, in the order of lane_feature_names. Close
+    // cones are within kClose_m of a segment; closeness weighs from 1 on the segment to 0 at kBeside_m.
+    kNearSteps,
+    kNearWidths = kNearSteps + 17,
     // Of the two first cones again: if a false cone replaces one of them, the rest of a lane may still be
     // right.
-    kStartLead,
+    kStartLead = kNearWidths + 6,
     kStartShift,
     kStartNearestSide,
     kStartNearestAhead,

@@ -2,8 +2,6 @@
 
 #include "graph_search/shared/simd_batch.hpp"
 
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 

@@ -1,8 +1,5 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 
-#include "graph_search/clc/deciders.hpp"
-#include "graph_search/clc/lane_constraints.hpp"
-
 #include <algorithm>
 
 namespace conelane {
@@ -72,18 +69,12 @@ std::uint32_t PathPairs::add_step(std::uint32_t before, Side side, Vertex vertex
     return static_cast<std::uint32_t>(steps_.size() - 1);
 }
 
-PathPairVertices PathPairs::vertices(const PathPair& pair) const {
-    PathPairVertices both;
-    for (const Side side : {kLeft, kRight}) vertices(pair, side, both[side]);
-    return both;
-}
-
-void PathPairs::vertices(const PathPair& pair, Side side, std::vector<Vertex>& vertices) const {
-    vertices.clear();
-    for (std::uint32_t step = pair.last_step; step != kNone; step = steps_[step].before) {
-        if (steps_[step].side == side) vertices.push_back(steps_[step].vertex);
-    }
-    std::ranges::reverse(vertices);
+PathPairVertices PathPairs::vertices(const PathPair& pair, PathPairVertices vertices) const {
+    for (std::vector<Vertex>& side : vertices) side.clear();
+    for (std::uint32_t step = pair.last_step; step != kNone; step = steps_[step].before)
+        vertices[steps_[step].side].push_back(steps_[step].vertex);
+    for (std::vector<Vertex>& side : vertices) std::ranges::reverse(side);
+    return vertices;
 }
 
 std::size_t PathPairs::bytes() const {

@@ -85,9 +85,8 @@ class PathPairs {
     [[nodiscard]] const std::vector<PathPair>& found() const { return found_; }
     /// One entry for each pair found, if features were requested.
     [[nodiscard]] std::span<const LaneFeatures> features() const { return features_; }
-    [[nodiscard]] PathPairVertices vertices(const PathPair& pair) const;
-    /// The vertices of one side, into `vertices`.
-    void vertices(const PathPair& pair, Side side, std::vector<Vertex>& vertices) const;
+    /// `vertices` gives its memory.
+    [[nodiscard]] PathPairVertices vertices(const PathPair& pair, PathPairVertices vertices = {}) const;
 
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     /// Returns the number of the new step. The first two of a pair are its start, left and right.

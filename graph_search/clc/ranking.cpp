@@ -18,12 +18,9 @@ constexpr std::size_t kBatch = 16;
 constexpr std::size_t kUnits = 4;
 
 /// The first feature of each pair of sides.
-constexpr std::array<LaneFeature, 6> kPairs{kConesLeft,
-                                            kSegmentLengthVarianceLeft,
-                                            kTurnVarianceLeft,
-                                            kMeanSegmentLengthLeft,
-                                            kAbsoluteMeanTurnLeft,
-                                            kMeanSquaredTurnChangeLeft};
+constexpr std::array<LaneFeature, 6> kPairs{{kConesLeft, kSegmentLengthVarianceLeft, kTurnVarianceLeft,
+                                             kMeanSegmentLengthLeft, kAbsoluteMeanTurnLeft,
+                                             kMeanSquaredTurnChangeLeft}};
 
 /// A batch of numbers in registers, for any register width.
 using Floats [[gnu::vector_size(32)]] = float;

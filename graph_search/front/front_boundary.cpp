@@ -1,7 +1,6 @@
 #include "graph_search/front/front_boundary.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <tuple>

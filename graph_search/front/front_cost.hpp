@@ -1,7 +1,7 @@
 #pragma once
 
 #include "graph_search/front/front_features.hpp"
-#include "graph_search/front/front_moves.hpp"
+#include "graph_search/front/front_state.hpp"
 #include "graph_search/front/front_weights.hpp"
 
 #include <array>

@@ -5,7 +5,6 @@
 #include "graph_search/weights/shipped_weights.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "graph_search/front/front_feature_schema.hpp"
 #include "graph_search/front/front_features.hpp"
 #include "graph_search/front/front_map.hpp"
 #include "graph_search/front/front_state.hpp"
@@ -8,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 
 namespace conelane {
 
@@ -64,75 +62,69 @@ struct ExtendSeen {
 
 inline constexpr std::array<FrontFeatureOf<ExtendSeen>, kExtendFeatures> kExtendSchema{{
     {"length", "m", "of the new segment: the rules ask for a cone every 5 m",
-     [](const ExtendSeen& s) { return scaled(s.length_m, kLengthScale_m); }},
-    {"log_ratio_own", "1", "its length over the last one's", [](const ExtendSeen& s) { return s.log_own; }},
-    {"log_ratio_own_size", "1", "absolute value", [](const ExtendSeen& s) { return std::abs(s.log_own); }},
+     [](auto& s) { return scaled(s.length_m, kLengthScale_m); }},
+    {"log_ratio_own", "1", "its length over the last one's", [](auto& s) { return s.log_own; }},
+    {"log_ratio_own_size", "1", "absolute value", [](auto& s) { return std::abs(s.log_own); }},
     {"log_ratio_other", "1", "its length over the other side's last one",
-     [](const ExtendSeen& s) { return s.log_other; }},
+     [](auto& s) { return s.log_other; }},
     {"log_ratio_mean", "1", "its length over the mean so far",
-     [](const ExtendSeen& s) { return s.edge.log_length - s.measures.log_mean_segment; }},
+     [](auto& s) { return s.edge.log_length - s.measures.log_mean_segment; }},
     {"turn", "rad", "from the last segment, positive inward",
-     [](const ExtendSeen& s) { return static_cast<float>(s.turn_rad); }},
+     [](auto& s) { return static_cast<float>(s.turn_rad); }},
     {"turn_size", "rad", "absolute value: boundaries bend little",
-     [](const ExtendSeen& s) { return static_cast<float>(std::abs(s.turn_rad)); }},
+     [](auto& s) { return static_cast<float>(std::abs(s.turn_rad)); }},
     {"turn_change", "rad", "from the last turn: bends are arcs",
-     [](const ExtendSeen& s) { return static_cast<float>(s.change_rad); }},
+     [](auto& s) { return static_cast<float>(s.change_rad); }},
     {"turn_change_size", "rad", "absolute value",
-     [](const ExtendSeen& s) { return static_cast<float>(std::abs(s.change_rad)); }},
+     [](auto& s) { return static_cast<float>(std::abs(s.change_rad)); }},
     {"turn_other", "rad", "less that of the other boundary: both bend alike",
-     [](const ExtendSeen& s) { return static_cast<float>(s.turn_other_rad); }},
+     [](auto& s) { return static_cast<float>(s.turn_other_rad); }},
     {"turn_other_size", "rad", "absolute value",
-     [](const ExtendSeen& s) { return static_cast<float>(std::abs(s.turn_other_rad)); }},
+     [](auto& s) { return static_cast<float>(std::abs(s.turn_other_rad)); }},
     {"skew", "rad", "angle from the new segment to the other side's last one",
-     [](const ExtendSeen& s) { return static_cast<float>(s.skew_rad); }},
+     [](auto& s) { return static_cast<float>(s.skew_rad); }},
     {"skew_size", "rad", "absolute value: they are parallel",
-     [](const ExtendSeen& s) { return static_cast<float>(std::abs(s.skew_rad)); }},
+     [](auto& s) { return static_cast<float>(std::abs(s.skew_rad)); }},
     {"width", "m", "from the new cone to the other boundary",
-     [](const ExtendSeen& s) {
-         return scaled(s.width_m, kLengthScale_m) - static_cast<float>(kDefaultWidth);
-     }},
+     [](auto& s) { return scaled(s.width_m, kLengthScale_m) - static_cast<float>(kDefaultWidth); }},
     {"width_deviation", "m", "absolute difference to the mean so far",
-     [](const ExtendSeen& s) { return scaled(std::abs(s.width_m - s.mean_width_m), 1.0); }},
+     [](auto& s) { return scaled(std::abs(s.width_m - s.mean_width_m), 1.0); }},
     {"width_change", "m", "from that of the cone before",
-     [](const ExtendSeen& s) { return scaled(s.width_m - s.measures.width_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.width_m - s.measures.width_m, kLengthScale_m); }},
     {"diagonal", "m", "from the new cone to the other's last one",
-     [](const ExtendSeen& s) { return scaled((s.facing - s.at).norm(), kLengthScale_m); }},
+     [](auto& s) { return scaled((s.facing - s.at).norm(), kLengthScale_m); }},
     {"lead", "m", "how far the new cone is before the other's last one",
-     [](const ExtendSeen& s) {
-         return scaled((s.at - s.facing).dot(s.other.direction), kLengthScale_m, kFarBeyond);
-     }},
+     [](auto& s) { return scaled((s.at - s.facing).dot(s.other.direction), kLengthScale_m, kFarBeyond); }},
     {"inside", "1", "cones in the triangle just swept, up to 3: a lane is empty",
-     [](const ExtendSeen& s) { return s.inside; }},
+     [](auto& s) { return s.inside; }},
     {"beside_inward", "1", "nearness of the nearest cone beside the segment, inside: one was skipped",
-     [](const ExtendSeen& s) { return s.about.nearest_beside[s.side == kRight ? kLeft : kRight]; }},
-    {"beside_outward", "1", "the same outside",
-     [](const ExtendSeen& s) { return s.about.nearest_beside[s.side]; }},
+     [](auto& s) { return s.about.nearest_beside[s.side == kRight ? kLeft : kRight]; }},
+    {"beside_outward", "1", "the same outside", [](auto& s) { return s.about.nearest_beside[s.side]; }},
     {"beside", "1", "nearness summed over all cones beside it",
-     [](const ExtendSeen& s) { return std::min(s.about.beside, kMaxCounted); }},
+     [](auto& s) { return std::min(s.about.beside, kMaxCounted); }},
     {"within_disc", "1", "cones in the disc about the segment, up to 4: neighbours have none between them",
-     [](const ExtendSeen& s) { return std::min(s.about.within_disc, 4.0F) / 2.0F; }},
+     [](auto& s) { return std::min(s.about.within_disc, 4.0F) / 2.0F; }},
     {"continuation", "1", "how badly the best next segment goes on: the boundary does not end here",
-     [](const ExtendSeen& s) { return s.about.continuation; }},
+     [](auto& s) { return s.about.continuation; }},
     {"partner", "m", "from the place across, a lane width off, to the nearest cone there",
-     [](const ExtendSeen& s) { return scaled(std::sqrt(s.partner_m2), kPartnerReach_m, 1.0); }},
+     [](auto& s) { return scaled(std::sqrt(s.partner_m2), kPartnerReach_m, 1.0); }},
     {"bridges", "1", "1 for a segment of more than 5.8 m: a cone was missed",
-     [](const ExtendSeen& s) { return s.length_m > kShortSegment_m ? 1.0F : 0.0F; }},
+     [](auto& s) { return s.length_m > kShortSegment_m ? 1.0F : 0.0F; }},
     {"view_left", "m", "from the new cone to the edge of view",
-     [](const ExtendSeen& s) { return scaled(s.view_m - s.at.norm(), kViewScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.view_m - s.at.norm(), kViewScale_m, kFarBeyond); }},
     {"crowding", "1", "nearness of the nearest cone to the new one: boundary cones stand alone",
-     [](const ExtendSeen& s) { return s.about.crowding; }},
+     [](auto& s) { return s.about.crowding; }},
     {"color_own", "1", "probability that the new cone has the color of its side",
-     [](const ExtendSeen& s) { return s.colors.cone.own; }},
-    {"color_against", "1", "that it has the other side's",
-     [](const ExtendSeen& s) { return s.colors.cone.against; }},
+     [](auto& s) { return s.colors.cone.own; }},
+    {"color_against", "1", "that it has the other side's", [](auto& s) { return s.colors.cone.against; }},
     {"color_orange", "1", "that it is orange: a gate, on either side",
-     [](const ExtendSeen& s) { return s.colors.cone.orange; }},
+     [](auto& s) { return s.colors.cone.orange; }},
     {"color_none", "1", "that its color is unknown, times the share of the cones in view that have one",
-     [](const ExtendSeen& s) { return s.colors.cone.none; }},
+     [](auto& s) { return s.colors.cone.none; }},
     {"color_beside", "1", "nearness of the nearest cone of the own color beside the segment: one was skipped",
-     [](const ExtendSeen& s) { return s.colors.beside; }},
+     [](auto& s) { return s.colors.beside; }},
     {"color_partner", "1", "color of the cone at the place across, times how near it is: 1 the other side's",
-     [](const ExtendSeen& s) { return s.colors.partner; }},
+     [](auto& s) { return s.colors.partner; }},
 }};
 
 }  // namespace conelane

@@ -1,13 +1,11 @@
 #include "graph_search/front/front_features.hpp"
 
 #include "graph_search/front/front_extend_features.hpp"
-#include "graph_search/front/front_feature_schema.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <tuple>
 
 namespace conelane {
 namespace {
@@ -43,57 +41,56 @@ struct StateSeen {
 
 constexpr std::array<FrontFeatureOf<StateSeen>, kStateFeatures> kStateSchema{{
     {"own_segment_known", "1", "1 from the second cone on: before, the heading stands for a direction",
-     [](const StateSeen& s) { return s.own.count > 1 ? 1.0F : 0.0F; }},
+     [](auto& s) { return s.own.count > 1 ? 1.0F : 0.0F; }},
     {"own_turn_known", "1", "1 from the third cone on",
-     [](const StateSeen& s) { return s.own.count > 2 ? 1.0F : 0.0F; }},
+     [](auto& s) { return s.own.count > 2 ? 1.0F : 0.0F; }},
     {"other_segment_known", "1", "the same of the other boundary",
-     [](const StateSeen& s) { return s.other.count > 1 ? 1.0F : 0.0F; }},
+     [](auto& s) { return s.other.count > 1 ? 1.0F : 0.0F; }},
     {"other_turn_known", "1", "the same of the other boundary",
-     [](const StateSeen& s) { return s.other.count > 2 ? 1.0F : 0.0F; }},
+     [](auto& s) { return s.other.count > 2 ? 1.0F : 0.0F; }},
     {"other_stopped", "1", "a side that has to go on alone soon ends",
-     [](const StateSeen& s) { return s.other.stopped ? 1.0F : 0.0F; }},
+     [](auto& s) { return s.other.stopped ? 1.0F : 0.0F; }},
     {"own_segment", "m", "cones are about evenly spaced",
-     [](const StateSeen& s) { return scaled(s.own.segment_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.own.segment_m, kLengthScale_m); }},
     {"other_segment", "m", "and on both sides alike",
-     [](const StateSeen& s) { return scaled(s.other.segment_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.other.segment_m, kLengthScale_m); }},
     {"own_turn", "rad", "the bend that is being driven, positive inward",
-     [](const StateSeen& s) { return static_cast<float>(s.in) * s.own.turn_rad; }},
+     [](auto& s) { return static_cast<float>(s.in) * s.own.turn_rad; }},
     {"other_turn", "rad", "the same seen by the other boundary",
-     [](const StateSeen& s) { return static_cast<float>(s.in) * s.other.turn_rad; }},
+     [](auto& s) { return static_cast<float>(s.in) * s.other.turn_rad; }},
     {"skew", "rad", "angle from the own last segment to the other's: boundaries are parallel",
-     [](const StateSeen& s) { return static_cast<float>(s.skew_rad); }},
+     [](auto& s) { return static_cast<float>(s.skew_rad); }},
     {"skew_size", "rad", "its absolute value",
-     [](const StateSeen& s) { return static_cast<float>(std::abs(s.skew_rad)); }},
+     [](auto& s) { return static_cast<float>(std::abs(s.skew_rad)); }},
     {"ends_apart", "m", "distance of both ends",
-     [](const StateSeen& s) { return scaled(s.ends_apart_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.ends_apart_m, kLengthScale_m); }},
     {"width", "m", "from the own end to the other boundary",
-     [](const StateSeen& s) { return scaled(s.measures.width_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.measures.width_m, kLengthScale_m); }},
     {"mean_width", "m", "a lane keeps its width",
-     [](const StateSeen& s) {
+     [](auto& s) {
          return scaled(s.measures.mean_width_m, kLengthScale_m) - static_cast<float>(kDefaultWidth);
      }},
     {"lag", "m", "how far the own end is behind the other",
-     [](const StateSeen& s) { return scaled(s.lag_m, kLengthScale_m, 2.0); }},
+     [](auto& s) { return scaled(s.lag_m, kLengthScale_m, 2.0); }},
     {"mean_segment", "m", "mean length of all segments so far",
-     [](const StateSeen& s) { return scaled(s.measures.mean_segment_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.measures.mean_segment_m, kLengthScale_m); }},
     {"density", "1", "logarithm of the number of cones around: false ones make it high",
-     [](const StateSeen& s) { return s.density; }},
+     [](auto& s) { return s.density; }},
     {"distance", "1", "of the end from the car, as a share of the view",
-     [](const StateSeen& s) { return scaled(s.distance_m, std::max(s.view_m, 1.0)); }},
+     [](auto& s) { return scaled(s.distance_m, std::max(s.view_m, 1.0)); }},
     {"view_left", "m", "from the end to the edge of view",
-     [](const StateSeen& s) { return scaled(s.view_m - s.distance_m, kViewScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.view_m - s.distance_m, kViewScale_m, kFarBeyond); }},
     {"own_cones", "1", "cones of the boundary so far, up to 8: at the beginning less is known",
-     [](const StateSeen& s) { return static_cast<float>(std::min<std::size_t>(s.own.count, 8)) / 8.0F; }},
+     [](auto& s) { return static_cast<float>(std::min<std::size_t>(s.own.count, 8)) / 8.0F; }},
     {"color_share", "1", "share of the cones in view that have the color of a side",
-     [](const StateSeen& s) { return s.colors.share; }},
+     [](auto& s) { return s.colors.share; }},
     {"color_consistency", "1", "whether cones next to each other have one color: else many colors are wrong",
-     [](const StateSeen& s) { return s.colors.consistency; }},
+     [](auto& s) { return s.colors.consistency; }},
     {"color_agreement", "1", "whether the colors of the lane so far are those of their sides",
-     [](const StateSeen& s) { return s.colors.agreement; }},
+     [](auto& s) { return s.colors.agreement; }},
     {"color_end", "1", "color of the own end: 1 of its side, -1 of the other one",
-     [](const StateSeen& s) { return s.colors.end; }},
-    {"color_other_end", "1", "the same of the other boundary",
-     [](const StateSeen& s) { return s.colors.other_end; }},
+     [](auto& s) { return s.colors.end; }},
+    {"color_other_end", "1", "the same of the other boundary", [](auto& s) { return s.colors.other_end; }},
 }};
 
 /// Inputs of the features of a stop.
@@ -115,37 +112,34 @@ struct StopSeen {
 
 constexpr std::array<FrontFeatureOf<StopSeen>, kStopFeatures> kStopSchema{{
     {"next_beyond", "m", "how far the cone that should come next, along the arc, is beyond the view",
-     [](const StopSeen& s) { return scaled(s.next.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.next.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
     {"next_ahead", "m", "how far ahead of the car it would be: nothing is seen behind",
-     [](const StopSeen& s) { return scaled(s.next.x(), kLengthScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.next.x(), kLengthScale_m, kFarBeyond); }},
     {"ahead", "m", "how far ahead of the car the end is",
-     [](const StopSeen& s) { return scaled(s.at.x(), kViewScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.at.x(), kViewScale_m, kFarBeyond); }},
     {"next_off", "m", "from that place to the nearest cone: nothing there, nothing to go on to",
-     [](const StopSeen& s) { return scaled(s.next_off_m, kLengthScale_m); }},
-    {"next_cones", "1", "cones within 2.5 m of that place, up to 3",
-     [](const StopSeen& s) { return s.next_cones; }},
+     [](auto& s) { return scaled(s.next_off_m, kLengthScale_m); }},
+    {"next_cones", "1", "cones within 2.5 m of that place, up to 3", [](auto& s) { return s.next_cones; }},
     {"straight_beyond", "m", "next_beyond where it would go on straight",
-     [](const StopSeen& s) { return scaled(s.straight.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.straight.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
     {"straight_ahead", "m", "next_ahead where it would go on straight",
-     [](const StopSeen& s) { return scaled(s.straight.x(), kLengthScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.straight.x(), kLengthScale_m, kFarBeyond); }},
     {"straight_off", "m", "next_off where it would go on straight",
-     [](const StopSeen& s) { return scaled(s.straight_off_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.straight_off_m, kLengthScale_m); }},
     {"moves", "1", "ways to go on, up to 12",
-     [](const StopSeen& s) { return static_cast<float>(std::min<std::size_t>(s.moves, 12)) / 12.0F; }},
+     [](auto& s) { return static_cast<float>(std::min<std::size_t>(s.moves, 12)) / 12.0F; }},
     {"smoothest", "1", "turn change and change of length of the smoothest of them",
-     [](const StopSeen& s) { return s.smoothest; }},
+     [](auto& s) { return s.smoothest; }},
     {"other_next_beyond", "m", "next_beyond of the other boundary: both leave the view about together",
-     [](const StopSeen& s) { return scaled(s.other_next.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.other_next.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
     {"other_next_ahead", "m", "next_ahead of the other boundary",
-     [](const StopSeen& s) { return scaled(s.other_next.x(), kLengthScale_m, kFarBeyond); }},
+     [](auto& s) { return scaled(s.other_next.x(), kLengthScale_m, kFarBeyond); }},
     {"bearing", "1", "cosine of the direction in which the car sees the end: 0 is the edge of the half disc",
-     [](const StopSeen& s) {
-         return s.distance_m > 0.0 ? static_cast<float>(s.at.x() / s.distance_m) : 0.0F;
-     }},
+     [](auto& s) { return s.distance_m > 0.0 ? static_cast<float>(s.at.x() / s.distance_m) : 0.0F; }},
     {"color_next", "1", "color of the cone nearest to where the next one would stand: 1 own, -1 the other's",
-     [](const StopSeen& s) { return s.color_next; }},
+     [](auto& s) { return s.color_next; }},
     {"color_goes_on", "1", "smoothness, up to 2, of the smoothest way to a cone of the own color",
-     [](const StopSeen& s) { return s.color_goes_on; }},
+     [](auto& s) { return s.color_goes_on; }},
 }};
 
 /// Inputs of the features of a start. Both boundaries judge the pair, each with the color of its own
@@ -165,59 +159,49 @@ struct StartSeen {
 };
 
 constexpr std::array<FrontFeatureOf<StartSeen>, kStartFeatures> kStartSchema{{
-    {"own_ahead", "m", "the first cones are near", [](const StartSeen& s) { return scaled(s.a.x(), 5.0); }},
-    {"own_outward", "m", "and a few metres to their side",
-     [](const StartSeen& s) { return scaled(s.own_out_m, 3.0); }},
-    {"other_ahead", "m", "the same of the other cone",
-     [](const StartSeen& s) { return scaled(s.b.x(), 5.0); }},
-    {"other_outward", "m", "the same of the other cone",
-     [](const StartSeen& s) { return scaled(s.other_out_m, 3.0); }},
-    {"width", "m", "distance of both", [](const StartSeen& s) { return scaled(s.width_m, kLengthScale_m); }},
+    {"own_ahead", "m", "the first cones are near", [](auto& s) { return scaled(s.a.x(), 5.0); }},
+    {"own_outward", "m", "and a few metres to their side", [](auto& s) { return scaled(s.own_out_m, 3.0); }},
+    {"other_ahead", "m", "the same of the other cone", [](auto& s) { return scaled(s.b.x(), 5.0); }},
+    {"other_outward", "m", "the same of the other cone", [](auto& s) { return scaled(s.other_out_m, 3.0); }},
+    {"width", "m", "distance of both", [](auto& s) { return scaled(s.width_m, kLengthScale_m); }},
     {"lead", "m", "how far the own cone is ahead of the other",
-     [](const StartSeen& s) { return scaled(s.lead_m, kLengthScale_m); }},
+     [](auto& s) { return scaled(s.lead_m, kLengthScale_m); }},
     {"lead_size", "m", "absolute value: they stand about level",
-     [](const StartSeen& s) { return scaled(std::abs(s.lead_m), kLengthScale_m); }},
+     [](auto& s) { return scaled(std::abs(s.lead_m), kLengthScale_m); }},
     {"middle_outward", "m", "the car drives about the middle, but for the pose error",
-     [](const StartSeen& s) { return scaled(s.middle_m, 2.0); }},
-    {"middle_outward_size", "m", "absolute value",
-     [](const StartSeen& s) { return scaled(std::abs(s.middle_m), 2.0); }},
-    {"own_distance", "m", "from the car", [](const StartSeen& s) { return scaled(s.a.norm(), 5.0); }},
+     [](auto& s) { return scaled(s.middle_m, 2.0); }},
+    {"middle_outward_size", "m", "absolute value", [](auto& s) { return scaled(std::abs(s.middle_m), 2.0); }},
+    {"own_distance", "m", "from the car", [](auto& s) { return scaled(s.a.norm(), 5.0); }},
     {"own_behind", "1", "cones in the strip behind it, up to 3: one of them may be the first",
-     [](const StartSeen& s) { return s.own.behind; }},
-    {"other_behind", "1", "the same of the other cone", [](const StartSeen& s) { return s.other.behind; }},
+     [](auto& s) { return s.own.behind; }},
+    {"other_behind", "1", "the same of the other cone", [](auto& s) { return s.other.behind; }},
     {"inside", "1", "cones in the triangle of car and pair, up to 3: a lane is empty",
-     [](const StartSeen& s) { return s.inside; }},
+     [](auto& s) { return s.inside; }},
     {"own_continuation", "1", "how badly a segment goes on from it along the heading",
-     [](const StartSeen& s) { return s.own.continuation; }},
-    {"other_continuation", "1", "the same of the other cone",
-     [](const StartSeen& s) { return s.other.continuation; }},
+     [](auto& s) { return s.own.continuation; }},
+    {"other_continuation", "1", "the same of the other cone", [](auto& s) { return s.other.continuation; }},
     {"own_predecessor", "1", "how badly a segment leads to it: a low one means it is not the first",
-     [](const StartSeen& s) { return s.own.predecessor; }},
-    {"other_predecessor", "1", "the same of the other cone",
-     [](const StartSeen& s) { return s.other.predecessor; }},
-    {"own_density", "1", "logarithm of the number of cones around",
-     [](const StartSeen& s) { return s.own.density; }},
-    {"other_density", "1", "the same of the other cone", [](const StartSeen& s) { return s.other.density; }},
+     [](auto& s) { return s.own.predecessor; }},
+    {"other_predecessor", "1", "the same of the other cone", [](auto& s) { return s.other.predecessor; }},
+    {"own_density", "1", "logarithm of the number of cones around", [](auto& s) { return s.own.density; }},
+    {"other_density", "1", "the same of the other cone", [](auto& s) { return s.other.density; }},
     {"own_crosses", "m", "how far it is on the other side of the heading",
-     [](const StartSeen& s) { return scaled(std::max(0.0, -s.own_out_m), 1.0); }},
+     [](auto& s) { return scaled(std::max(0.0, -s.own_out_m), 1.0); }},
     {"other_crosses", "m", "the same of the other cone",
-     [](const StartSeen& s) { return scaled(std::max(0.0, -s.other_out_m), 1.0); }},
+     [](auto& s) { return scaled(std::max(0.0, -s.other_out_m), 1.0); }},
     {"slant", "1", "sine of the angle by which the pair is off square",
-     [](const StartSeen& s) { return scaled(s.lead_m, std::max(s.width_m, 1.0)); }},
+     [](auto& s) { return scaled(s.lead_m, std::max(s.width_m, 1.0)); }},
     {"own_passed", "1", "1 where it is behind the car, by the pose error or noise",
-     [](const StartSeen& s) { return s.a.x() < 0.0 ? 1.0F : 0.0F; }},
-    {"other_passed", "1", "the same of the other cone",
-     [](const StartSeen& s) { return s.b.x() < 0.0 ? 1.0F : 0.0F; }},
-    {"color_own", "1", "probability that it has the color of its side",
-     [](const StartSeen& s) { return s.colors.own; }},
-    {"color_against", "1", "that it has the other side's",
-     [](const StartSeen& s) { return s.colors.against; }},
+     [](auto& s) { return s.a.x() < 0.0 ? 1.0F : 0.0F; }},
+    {"other_passed", "1", "the same of the other cone", [](auto& s) { return s.b.x() < 0.0 ? 1.0F : 0.0F; }},
+    {"color_own", "1", "probability that it has the color of its side", [](auto& s) { return s.colors.own; }},
+    {"color_against", "1", "that it has the other side's", [](auto& s) { return s.colors.against; }},
     {"color_orange", "1", "that it is orange: a gate, on either side",
-     [](const StartSeen& s) { return s.colors.orange; }},
+     [](auto& s) { return s.colors.orange; }},
     {"color_none", "1", "that its color is unknown, times the share of the cones in view that have one",
-     [](const StartSeen& s) { return s.colors.none; }},
+     [](auto& s) { return s.colors.none; }},
     {"color_consistency", "1", "whether cones next to each other have one color: else many colors are wrong",
-     [](const StartSeen& s) { return s.colors.consistency; }},
+     [](auto& s) { return s.colors.consistency; }},
 }};
 
 /// +1 if a turn to the left is inward, -1 if it is outward.
@@ -371,28 +355,26 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
     const Point& at = map.position(own.cones[0]);
     const Point& facing = map.position(other.cones[0]);
     const double in = inward(side);
-    const double skew_rad = in * turn(own.bearing_rad, other.bearing_rad);
     const Point along = own.direction + other.direction;
     const double along_norm = along.norm();
-    const double lag_m = along_norm > 0.0 ? (facing - at).dot(along) / along_norm : 0.0;
-    const double distance_m = at.norm();
     StateColors colors;
     if (map.has_colors()) {
         colors = {map.color_share(), map.color_consistency(), state.color_agreement(),
                   map.color(own.cones[0]).speaks_for(side),
                   map.color(other.cones[0]).speaks_for(opposite(side))};
     }
-    return values_of<kStateSchema>(StateSeen{.own = own,
-                                             .other = other,
-                                             .measures = measures,
-                                             .in = in,
-                                             .skew_rad = skew_rad,
-                                             .ends_apart_m = (facing - at).norm(),
-                                             .lag_m = lag_m,
-                                             .distance_m = distance_m,
-                                             .view_m = map.view_radius_m(),
-                                             .density = map.density(own.cones[0]),
-                                             .colors = colors});
+    const StateSeen seen{.own = own,
+                         .other = other,
+                         .measures = measures,
+                         .in = in,
+                         .skew_rad = in * turn(own.bearing_rad, other.bearing_rad),
+                         .ends_apart_m = (facing - at).norm(),
+                         .lag_m = along_norm > 0.0 ? (facing - at).dot(along) / along_norm : 0.0,
+                         .distance_m = at.norm(),
+                         .view_m = map.view_radius_m(),
+                         .density = map.density(own.cones[0]),
+                         .colors = colors};
+    return values_of<kStateSchema>(seen);
 }
 
 ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side, const FrontMove& move,
@@ -405,15 +387,8 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
     const Point& at = map.position(move.to);
     const Point& facing = map.position(other.cones[0]);
     const double in = inward(side);
-    const double length_m = edge.length_m;
     const double turn_rad = in * turn(own.bearing_rad, edge.bearing_rad);
-    const double change_rad = own.count > 2 ? wrapped_angle(turn_rad - in * own.turn_rad) : 0.0;
-    const double turn_other_rad = other.count > 2 ? wrapped_angle(turn_rad - in * other.turn_rad) : 0.0;
-    const double skew_rad = in * turn(edge.bearing_rad, other.bearing_rad);
-    const double width_m = facing_distance_m(map, other, at);
     const double mean_width_m = measures.mean_width_m;
-    const float log_own = own.count > 1 ? edge.log_length - own.log_segment : 0.0F;
-    const float log_other = other.count > 1 ? edge.log_length - other.log_segment : 0.0F;
     // The place across: to the right of a left boundary.
     const Point across = at + in * mean_width_m * Point(-edge.direction.y(), edge.direction.x());
     double partner_m2 = (facing - across).squaredNorm();
@@ -433,7 +408,6 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
         partner = near.to;
         break_m = farthest_m();
     }
-    const float inside = inside_triangle(map, from, at, facing, move.to, other.cones[0], measures);
     ExtendColors colors;
     if (map.has_colors()) {
         colors.cone = colors_of(map, move.to, side);
@@ -441,26 +415,28 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
         const double nearness = std::max(0.0, 1.0 - std::sqrt(partner_m2) / kPartnerReach_m);
         colors.partner = static_cast<float>(nearness) * map.color(partner).speaks_for(opposite(side));
     }
-    return values_of<kExtendSchema>(ExtendSeen{.measures = measures,
-                                               .about = about,
-                                               .edge = edge,
-                                               .other = other,
-                                               .side = side,
-                                               .at = at,
-                                               .facing = facing,
-                                               .length_m = length_m,
-                                               .turn_rad = turn_rad,
-                                               .change_rad = change_rad,
-                                               .turn_other_rad = turn_other_rad,
-                                               .skew_rad = skew_rad,
-                                               .width_m = width_m,
-                                               .mean_width_m = mean_width_m,
-                                               .view_m = map.view_radius_m(),
-                                               .partner_m2 = partner_m2,
-                                               .log_own = log_own,
-                                               .log_other = log_other,
-                                               .inside = inside,
-                                               .colors = colors});
+    const ExtendSeen seen{
+        .measures = measures,
+        .about = about,
+        .edge = edge,
+        .other = other,
+        .side = side,
+        .at = at,
+        .facing = facing,
+        .length_m = edge.length_m,
+        .turn_rad = turn_rad,
+        .change_rad = own.count > 2 ? wrapped_angle(turn_rad - in * own.turn_rad) : 0.0,
+        .turn_other_rad = other.count > 2 ? wrapped_angle(turn_rad - in * other.turn_rad) : 0.0,
+        .skew_rad = in * turn(edge.bearing_rad, other.bearing_rad),
+        .width_m = facing_distance_m(map, other, at),
+        .mean_width_m = mean_width_m,
+        .view_m = map.view_radius_m(),
+        .partner_m2 = partner_m2,
+        .log_own = own.count > 1 ? edge.log_length - own.log_segment : 0.0F,
+        .log_other = other.count > 1 ? edge.log_length - other.log_segment : 0.0F,
+        .inside = inside_triangle(map, from, at, facing, move.to, other.cones[0], measures),
+        .colors = colors};
+    return values_of<kExtendSchema>(seen);
 }
 
 StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
@@ -468,7 +444,6 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     const FrontEnd& own = state.ends[side];
     const FrontEnd& other = state.ends[opposite(side)];
     const Point& at = map.position(own.cones[0]);
-    const double view_m = map.view_radius_m();
     const auto length_of = [](const FrontEnd& end) {
         return end.count > 1 ? static_cast<double>(end.segment_m) : 3.5;
     };
@@ -476,7 +451,6 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     const Point straight = next_place(map, own, 0.0, length_of(own));
     const Point other_next = next_place(map, other, other.turn_rad, length_of(other));
     const auto [next_off_m, next_cones, next_cone] = nearest_to(map, own, other, next);
-    const double straight_off_m = nearest_to(map, own, other, straight).off_m;
     constexpr std::size_t kTurnChangeSize = place_of(kExtendSchema, "turn_change_size");
     constexpr std::size_t kLogRatioOwnSize = place_of(kExtendSchema, "log_ratio_own_size");
     const std::size_t moves = extensions.size() / kExtendFeatures;
@@ -491,20 +465,20 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
         color_goes_on = std::max(color_goes_on, extension[kColorOwn] * (kRough - badness));
     }
     const bool color_known = map.has_colors() && next_cone != kNoCone;
-    const float color_next = color_known ? map.color(next_cone).speaks_for(side) : 0.0F;
-    return values_of<kStopSchema>(StopSeen{.at = at,
-                                           .distance_m = at.norm(),
-                                           .view_m = view_m,
-                                           .next = next,
-                                           .straight = straight,
-                                           .other_next = other_next,
-                                           .next_off_m = next_off_m,
-                                           .next_cones = next_cones,
-                                           .straight_off_m = straight_off_m,
-                                           .moves = moves,
-                                           .smoothest = smoothest,
-                                           .color_next = color_next,
-                                           .color_goes_on = color_goes_on});
+    const StopSeen seen{.at = at,
+                        .distance_m = at.norm(),
+                        .view_m = map.view_radius_m(),
+                        .next = next,
+                        .straight = straight,
+                        .other_next = other_next,
+                        .next_off_m = next_off_m,
+                        .next_cones = next_cones,
+                        .straight_off_m = nearest_to(map, own, other, straight).off_m,
+                        .moves = moves,
+                        .smoothest = smoothest,
+                        .color_next = color_known ? map.color(next_cone).speaks_for(side) : 0.0F,
+                        .color_goes_on = color_goes_on};
+    return values_of<kStopSchema>(seen);
 }
 
 StartCone start_cone(FrontMap& map, Vertex cone) {
@@ -531,11 +505,7 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
     const Point& a = map.position(own.cone);
     const Point& b = map.position(other.cone);
     const double outward = -inward(side);
-    const double own_out_m = outward * a.y();
-    const double other_out_m = -outward * b.y();
     const double width_m = (a - b).norm();
-    const double lead_m = a.x() - b.x();
-    const double middle_m = outward * (a.y() + b.y()) / 2.0;
     // Cones in the triangle of the car and the pair.
     float inside = 0.0F;
     const double area = cross(a, b);
@@ -550,17 +520,18 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
     }
     ConeColors colors;
     if (map.has_colors()) colors = colors_of(map, own.cone, side);
-    return values_of<kStartSchema>(StartSeen{.own = own,
-                                             .other = other,
-                                             .a = a,
-                                             .b = b,
-                                             .own_out_m = own_out_m,
-                                             .other_out_m = other_out_m,
-                                             .width_m = width_m,
-                                             .lead_m = lead_m,
-                                             .middle_m = middle_m,
-                                             .inside = inside,
-                                             .colors = colors});
+    const StartSeen seen{.own = own,
+                         .other = other,
+                         .a = a,
+                         .b = b,
+                         .own_out_m = outward * a.y(),
+                         .other_out_m = -outward * b.y(),
+                         .width_m = width_m,
+                         .lead_m = a.x() - b.x(),
+                         .middle_m = outward * (a.y() + b.y()) / 2.0,
+                         .inside = inside,
+                         .colors = colors};
+    return values_of<kStartSchema>(seen);
 }
 
 }  // namespace conelane

@@ -1,15 +1,58 @@
 #pragma once
 
-#include "graph_search/front/front_feature_schema.hpp"
 #include "graph_search/front/front_state.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
+#include <string_view>
+#include <utility>
 
 namespace conelane {
+
+/// An input of a network. Turns and sides are seen from the boundary that moves, with inward, towards the
+/// other boundary, as positive: so a scene and its mirror image are judged alike.
+struct FrontFeature {
+    std::string_view name;
+    std::string_view unit;    ///< of what is measured, before it is scaled to about 1
+    std::string_view reason;  ///< what it tells, with what a high value means
+};
+
+/// A feature with the function that finds it. A schema is an array of these, and the only place that says in
+/// which order the features of a network stand: tables, places and values all come from it.
+template <typename Seen>
+struct FrontFeatureOf {
+    std::string_view name;
+    std::string_view unit;
+    std::string_view reason;
+    float (*value)(const Seen&);  ///< of what was measured
+};
+
+template <typename Seen, std::size_t count>
+constexpr std::array<FrontFeature, count> table_of(const std::array<FrontFeatureOf<Seen>, count>& schema) {
+    std::array<FrontFeature, count> table{};
+    for (std::size_t i = 0; i < count; ++i) table[i] = {schema[i].name, schema[i].unit, schema[i].reason};
+    return table;
+}
+
+/// The place of a feature, found when this is compiled; an error there where none has the name.
+template <typename Seen, std::size_t count>
+consteval std::size_t place_of(const std::array<FrontFeatureOf<Seen>, count>& schema, std::string_view name) {
+    for (std::size_t i = 0; i < count; ++i) {
+        if (schema[i].name == name) return i;
+    }
+    throw "the schema has no feature of this name";
+}
+
+/// The values of all features of a schema.
+template <const auto& schema, typename Seen>
+std::array<float, schema.size()> values_of(const Seen& seen) {
+    return [&seen]<std::size_t... place>(std::index_sequence<place...>) {
+        return std::array<float, sizeof...(place)>{schema[place].value(seen)...};
+    }
+    (std::make_index_sequence<schema.size()>());
+}
 
 // The networks see: `extend` the state and the move, `stop` the state and the stop, `start` the pair.
 // Features of colors stand last, and are all 0 if no cone of the scene has one.
@@ -68,5 +111,29 @@ struct StartCone {
 /// As the boundary on `side` sees the pair.
 [[nodiscard]] StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCone& other,
                                            Side side);
+
+// What FrontJudge sees of the best lanes of a search, its contenders. Their probabilities are the softmax of
+// their scores.
+
+/// Of a cone of a lane, before what FrontCost saw of the move that added it (0 for the first pair).
+inline constexpr std::size_t kConeFeatures = 8;
+/// Of a whole lane.
+inline constexpr std::size_t kWholeLaneColorFeatures = 4;  ///< the last ones
+inline constexpr std::size_t kWholeLaneFeatures = 30 + kWholeLaneColorFeatures;
+inline constexpr std::size_t kRightInputs = kConeFeatures + kExtendInputs;
+
+[[nodiscard]] std::span<const FrontFeature, kConeFeatures> cone_feature_table();
+[[nodiscard]] std::span<const FrontFeature, kWholeLaneFeatures> whole_lane_feature_table();
+
+/// All tables under the keys that files of weights have for them, in the order of those files.
+struct FrontFeatureList {
+    std::string_view key;
+    std::span<const FrontFeature> features;
+    std::size_t colors;  ///< how many at their end are of colors
+};
+[[nodiscard]] std::array<FrontFeatureList, 6> front_feature_lists();
+
+using RightInputs = std::array<float, kRightInputs>;
+using WholeLaneFeatures = std::array<float, kWholeLaneFeatures>;
 
 }  // namespace conelane

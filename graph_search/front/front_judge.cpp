@@ -1,7 +1,7 @@
 #include "graph_search/front/front_judge.hpp"
 
 #include "graph_search/front/front_extend_features.hpp"
-#include "graph_search/front/front_feature_schema.hpp"
+#include "graph_search/front/front_features.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -36,19 +36,19 @@ struct ConeSeen {
 };
 
 constexpr std::array<FrontFeatureOf<ConeSeen>, kConeFeatures> kConeSchema{{
-    {"is_first", "1", "1 for the first pair", [](const ConeSeen& s) { return s.is_first ? 1.0F : 0.0F; }},
-    {"move_score", "1", "of the move alone", [](const ConeSeen& s) { return score_input(s.own_score); }},
+    {"is_first", "1", "1 for the first pair", [](auto& s) { return s.is_first ? 1.0F : 0.0F; }},
+    {"move_score", "1", "of the move alone", [](auto& s) { return score_input(s.own_score); }},
     {"move_margin", "1", "score over that of the best other move",
-     [](const ConeSeen& s) { return score_input(s.margin); }},
+     [](auto& s) { return score_input(s.margin); }},
     {"share", "1", "probability of the contenders that have the same segment",
-     [](const ConeSeen& s) { return static_cast<float>(s.share); }},
-    {"least_share", "1", "least of this and those before it", [](const ConeSeen& s) { return s.min_share; }},
+     [](auto& s) { return static_cast<float>(s.share); }},
+    {"least_share", "1", "least of this and those before it", [](auto& s) { return s.min_share; }},
     {"lead", "1", "score of the best contender with this segment over the best one without",
-     [](const ConeSeen& s) { return score_input(s.lead); }},
+     [](auto& s) { return score_input(s.lead); }},
     {"lane_lead", "1", "score of the best contender over the second",
-     [](const ConeSeen& s) { return score_input(s.lane_lead); }},
+     [](auto& s) { return score_input(s.lane_lead); }},
     {"probability", "1", "of the contender that is the best with this segment",
-     [](const ConeSeen& s) { return static_cast<float>(s.probability); }},
+     [](auto& s) { return static_cast<float>(s.probability); }},
 }};
 
 /// Without the bonuses that the search adds for FrontEvidence.
@@ -134,72 +134,64 @@ struct WholeLaneSeen {
 
 constexpr std::array<FrontFeatureOf<WholeLaneSeen>, kWholeLaneFeatures> kWholeLaneSchema{{
     {"behind", "1", "how far its score is behind the best one",
-     [](const WholeLaneSeen& s) { return score_input(s.behind); }},
-    {"probability", "1", "by its score",
-     [](const WholeLaneSeen& s) { return static_cast<float>(s.probability); }},
+     [](auto& s) { return score_input(s.behind); }},
+    {"probability", "1", "by its score", [](auto& s) { return static_cast<float>(s.probability); }},
     {"precision", "1", "share of its length that others have too, weighed by their probability",
-     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.shared_m / s.both_m); }},
+     [](auto& s) { return static_cast<float>(s.all.shared_m / s.both_m); }},
     {"recall", "1", "the same as a share of the length that is expected",
-     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.shared_m / s.expected_m); }},
+     [](auto& s) { return static_cast<float>(s.all.shared_m / s.expected_m); }},
     {"least_lead", "1", "least lead of its segments over contenders without them",
-     [](const WholeLaneSeen& s) { return s.all.least_lead; }},
-    {"least_share", "1", "least share of its segments",
-     [](const WholeLaneSeen& s) { return s.all.least_share; }},
-    {"mean_score", "1", "of its moves", [](const WholeLaneSeen& s) { return score_input(s.mean_score); }},
+     [](auto& s) { return s.all.least_lead; }},
+    {"least_share", "1", "least share of its segments", [](auto& s) { return s.all.least_share; }},
+    {"mean_score", "1", "of its moves", [](auto& s) { return score_input(s.mean_score); }},
     {"least_score", "1", "of its moves: that of the least certain cone",
-     [](const WholeLaneSeen& s) { return s.all.least_score; }},
+     [](auto& s) { return s.all.least_score; }},
     {"least_margin", "1", "the same of the margins over other moves",
-     [](const WholeLaneSeen& s) { return s.all.least_margin; }},
+     [](auto& s) { return s.all.least_margin; }},
     {"right_near", "1", "probability that all cones of the first 20 m are right",
-     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.right_near); }},
+     [](auto& s) { return static_cast<float>(s.all.right_near); }},
     {"right", "1", "probability that all its cones are right",
-     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.right); }},
+     [](auto& s) { return static_cast<float>(s.all.right); }},
     {"length", "1", "as a share of the view",
-     [](const WholeLaneSeen& s) { return static_cast<float>(s.both_m / 2.0 / s.view_m); }},
+     [](auto& s) { return static_cast<float>(s.both_m / 2.0 / s.view_m); }},
     {"length_expected", "1", "logarithm of its length over the length expected",
-     [](const WholeLaneSeen& s) {
-         return std::clamp(static_cast<float>(std::log(s.both_m / s.expected_m)), -kMax, kMax);
-     }},
+     [](auto& s) { return std::clamp(static_cast<float>(std::log(s.both_m / s.expected_m)), -kMax, kMax); }},
     {"sides", "1", "shorter boundary over longer one",
-     [](const WholeLaneSeen& s) {
+     [](auto& s) {
          return static_cast<float>(std::min(s.all.length_m[kLeft], s.all.length_m[kRight]) /
                                    std::max(s.all.length_m[kLeft], s.all.length_m[kRight]));
      }},
-    {"cones", "1", "of both boundaries",
-     [](const WholeLaneSeen& s) { return std::min(s.moves / 20.0F, kMax); }},
+    {"cones", "1", "of both boundaries", [](auto& s) { return std::min(s.moves / 20.0F, kMax); }},
     {"bridges", "1", "segments of more than 5.8 m, up to 4",
-     [](const WholeLaneSeen& s) { return std::min(s.all.bridges, 4.0F) / 2.0F; }},
-    {"longest", "m", "segment", [](const WholeLaneSeen& s) { return s.all.longest; }},
+     [](auto& s) { return std::min(s.all.bridges, 4.0F) / 2.0F; }},
+    {"longest", "m", "segment", [](auto& s) { return s.all.longest; }},
     {"inside", "1", "cones inside, up to 4: a lane is empty",
-     [](const WholeLaneSeen& s) { return std::min(s.all.inside, 4.0F) / 2.0F; }},
+     [](auto& s) { return std::min(s.all.inside, 4.0F) / 2.0F; }},
     {"beside_inward", "1", "mean nearness of cones inside, beside its segments",
-     [](const WholeLaneSeen& s) { return s.all.inward / s.moves; }},
-    {"beside_outward", "1", "the same outside",
-     [](const WholeLaneSeen& s) { return s.all.outward / s.moves; }},
-    {"narrowest", "m", "width at a cone", [](const WholeLaneSeen& s) { return s.all.narrowest; }},
-    {"widest", "m", "width at a cone", [](const WholeLaneSeen& s) { return s.all.widest; }},
-    {"width_deviation", "m", "mean over its cones",
-     [](const WholeLaneSeen& s) { return s.all.deviation / s.moves; }},
+     [](auto& s) { return s.all.inward / s.moves; }},
+    {"beside_outward", "1", "the same outside", [](auto& s) { return s.all.outward / s.moves; }},
+    {"narrowest", "m", "width at a cone", [](auto& s) { return s.all.narrowest; }},
+    {"widest", "m", "width at a cone", [](auto& s) { return s.all.widest; }},
+    {"width_deviation", "m", "mean over its cones", [](auto& s) { return s.all.deviation / s.moves; }},
     {"turn_change", "rad", "mean over its cones: bends are arcs",
-     [](const WholeLaneSeen& s) { return s.all.turn_change / s.moves; }},
-    {"largest_turn", "rad", "at a cone", [](const WholeLaneSeen& s) { return s.all.largest_turn; }},
+     [](auto& s) { return s.all.turn_change / s.moves; }},
+    {"largest_turn", "rad", "at a cone", [](auto& s) { return s.all.largest_turn; }},
     {"log_ratio", "1", "mean change of the logarithm of its segments' lengths",
-     [](const WholeLaneSeen& s) { return s.all.log_ratio / s.moves; }},
+     [](auto& s) { return s.all.log_ratio / s.moves; }},
     {"view_left", "m", "of the end that is farther from the edge of view",
-     [](const WholeLaneSeen& s) { return std::max(s.all.view_left[kLeft], s.all.view_left[kRight]); }},
-    {"stop_score", "1", "of the worse of both stops",
-     [](const WholeLaneSeen& s) { return score_input(s.worst_stop); }},
-    {"start_score", "1", "of the first pair", [](const WholeLaneSeen& s) { return s.start_score; }},
+     [](auto& s) { return std::max(s.all.view_left[kLeft], s.all.view_left[kRight]); }},
+    {"stop_score", "1", "of the worse of both stops", [](auto& s) { return score_input(s.worst_stop); }},
+    {"start_score", "1", "of the first pair", [](auto& s) { return s.start_score; }},
     {"cones_off", "1", "logarithm of the cones of the scene over those of the lane",
-     [](const WholeLaneSeen& s) { return s.log_cones_off; }},
+     [](auto& s) { return s.log_cones_off; }},
     {"color_agreement", "1", "whether the colors of its cones are those of their sides, from -1 to 1",
-     [](const WholeLaneSeen& s) { return s.color_agreement; }},
+     [](auto& s) { return s.color_agreement; }},
     {"color_against", "1", "cones of the other side's color, up to 4",
-     [](const WholeLaneSeen& s) { return std::min(s.all.color_against, 4.0F) / 2.0F; }},
+     [](auto& s) { return std::min(s.all.color_against, 4.0F) / 2.0F; }},
     {"color_share", "1", "share of the cones in view that have the color of a side",
-     [](const WholeLaneSeen& s) { return s.color_share; }},
+     [](auto& s) { return s.color_share; }},
     {"color_consistency", "1", "whether cones next to each other have one color: else many colors are wrong",
-     [](const WholeLaneSeen& s) { return s.color_consistency; }},
+     [](auto& s) { return s.color_consistency; }},
 }};
 
 /// The lowest score of a stop. The last of the two stops is not a state of its own.

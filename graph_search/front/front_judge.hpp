@@ -1,6 +1,6 @@
 #pragma once
 
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 #include "graph_search/front/front_search.hpp"
 #include "graph_search/front/front_weights.hpp"
 

@@ -1,8 +1,6 @@
 #include "graph_search/front/front_map.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 namespace conelane {

@@ -3,19 +3,12 @@
 #include "conelane/invalid_input.hpp"
 
 #include <cmath>
-#include <string>
 #include <tuple>
-#include <utility>
 
 namespace conelane {
 namespace {
 
-std::size_t word_of(Vertex cone) {
-    return cone / 64 % 4;
-}
-std::uint64_t bit_of(Vertex cone) {
-    return std::uint64_t{1} << (cone % 64);
-}
+constexpr std::size_t kBits = decltype(FrontSearch::Node::bits){}.size();
 
 /// The difference of each score and the best other score.
 class Margins {
@@ -153,22 +146,13 @@ void FrontSearch::expand(std::size_t number) {
             from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
         const double score = from.score + static_cast<double>(scores[i]) + bonus(side, move.to);
         push(std::max(level + 1, static_cast<std::size_t>(progress_m / options_.level_m)),
-             {.score = score,
-              .parent = number,
-              .move = move,
-              .side = side,
-              .start = from.start,
-              .margin = margins.of(scores[i])});
+             {score, number, move, side, from.start, margins.of(scores[i])});
     }
     if (!moves_.stops) return;
     const double score = from.score + static_cast<double>(scores.back());
     if (!from.state.ends[opposite(side)].stopped) {
-        push(level_after(level, from.state), {.score = score,
-                                              .parent = number,
-                                              .move = {},
-                                              .side = side,
-                                              .start = from.start,
-                                              .margin = margins.of(scores.back())});
+        push(level_after(level, from.state),
+             {score, number, {}, side, from.start, margins.of(scores.back())});
     } else if (from.state.is_lane()) {
         finished_.push_back({number, side, score});
         best_finished_ = std::max(best_finished_, score);
@@ -186,28 +170,23 @@ std::size_t FrontSearch::level_of(const FrontState& state) const {
 }
 
 std::size_t FrontSearch::add(const Candidate& candidate) {
-    Node node;
-    node.score = candidate.score;
-    node.parent = candidate.parent;
-    node.move = candidate.move;
-    node.side = candidate.side;
-    node.start = candidate.start;
-    node.margin = candidate.margin;
+    Node node{candidate, {}, 0.0, {}};
     if (candidate.parent == kNone) {
         const auto& [left, right] = starts_.pairs[candidate.start];
         node.state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);
         node.bonus =
             bonus(kLeft, node.state.ends[kLeft].cones[0]) + bonus(kRight, node.state.ends[kRight].cones[0]);
-        node.bits.fill(0);
-        for (const FrontEnd& end : node.state.ends) node.bits[word_of(end.cones[0])] |= bit_of(end.cones[0]);
+        for (const FrontEnd& end : node.state.ends) node.bits.set(end.cones[0] % kBits);
     } else {
         if (!candidate.move.stops() && !is_free(candidate.parent, candidate.side, candidate.move.to))
             return kNone;
         node.state = moved(map_, nodes_[candidate.parent].state, candidate.side, candidate.move);
         node.bits = nodes_[candidate.parent].bits;
         node.bonus = nodes_[candidate.parent].bonus;
-        if (!candidate.move.stops()) node.bonus += bonus(candidate.side, candidate.move.to);
-        if (!candidate.move.stops()) node.bits[word_of(candidate.move.to)] |= bit_of(candidate.move.to);
+        if (!candidate.move.stops()) {
+            node.bonus += bonus(candidate.side, candidate.move.to);
+            node.bits.set(candidate.move.to % kBits);
+        }
     }
     nodes_.push_back(node);
     return nodes_.size() - 1;
@@ -219,8 +198,8 @@ bool FrontSearch::is_kept_front(const FrontState& state) const {
 }
 
 bool FrontSearch::is_on_lane(std::size_t number, Vertex cone) const {
-    if ((nodes_[number].bits[word_of(cone)] & bit_of(cone)) == 0) return false;
-    if (map_.size() <= 64 * nodes_[number].bits.size()) return true;
+    if (!nodes_[number].bits[cone % kBits]) return false;
+    if (map_.size() <= kBits) return true;
     for (; number != kNone; number = nodes_[number].parent) {
         const Node& node = nodes_[number];
         if (node.state.ends[kLeft].cones[0] == cone || node.state.ends[kRight].cones[0] == cone) return true;

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -71,27 +71,20 @@ class FrontSearch {
   public:
     static constexpr std::size_t kNone = ~std::size_t{0};
 
-    struct Node {
-        FrontState state;
-        double score;
-        std::size_t parent;  ///< kNone: a start
-        FrontMove move;      ///< that led here
-        Side side;           ///< that moved
-        std::size_t start;   ///< place in FrontStarts::pairs
-        float margin;        ///< see Candidate
-        double bonus;        ///< the part of the score that comes from FrontEvidence
-        std::array<std::uint64_t, 4>
-            bits;  ///< a bit for each cone of the lane; cones with the same remainder share a bit
-    };
-
     /// A state that may be kept.
     struct Candidate {
         double score;
-        std::size_t parent;
-        FrontMove move;
-        Side side;
-        std::size_t start;
+        std::size_t parent;   ///< kNone: a start
+        FrontMove move;       ///< that leads here
+        Side side;            ///< that moves
+        std::size_t start;    ///< place in FrontStarts::pairs
         float margin = 0.0F;  ///< score of the move over that of the best other one, or start
+    };
+
+    struct Node : Candidate {
+        FrontState state;
+        double bonus;           ///< the part of the score that comes from FrontEvidence
+        std::bitset<256> bits;  ///< of the cones of the lane; those with the same remainder share a bit
     };
 
     /// Keeps the references until the next run, and memory from call to call. With evidence, scores include

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
-#include <utility>
 
 namespace conelane {
 namespace {
@@ -14,14 +12,13 @@ constexpr std::size_t kBytesPerEdge = 32;
 
 }  // namespace
 
-void SearchGraph::build(std::span<const Point> points, double d_max_m, const EdgeRule& rule) {
+void SearchGraph::build(std::span<const Point> points, double d_max_m) {
     SearchBudget unlimited;
     unlimited.memory_limit_bytes = std::numeric_limits<std::size_t>::max();
-    (void)build(points, d_max_m, rule, unlimited);
+    (void)build(points, d_max_m, unlimited);
 }
 
-bool SearchGraph::build(std::span<const Point> points, double d_max_m, const EdgeRule& rule,
-                        SearchBudget& budget) {
+bool SearchGraph::build(std::span<const Point> points, double d_max_m, SearchBudget& budget) {
     points_.assign(points.begin(), points.end());
     neighbours_.clear();
     first_edge_.assign(1, 0);
@@ -64,7 +61,6 @@ bool SearchGraph::build(std::span<const Point> points, double d_max_m, const Edg
             return false;
         }
     }
-    if (rule) keep_pairs(rule(points));
     neighbour_x_.resize(neighbours_.size() + kSpare);
     neighbour_y_.resize(neighbours_.size() + kSpare);
     for (std::size_t i = 0; i < neighbours_.size(); ++i) {
@@ -72,24 +68,6 @@ bool SearchGraph::build(std::span<const Point> points, double d_max_m, const Edg
         neighbour_y_[i] = points_[neighbours_[i]].y();
     }
     return true;
-}
-
-void SearchGraph::keep_pairs(std::vector<std::pair<Vertex, Vertex>> pairs) {
-    for (auto& [low, high] : pairs) {
-        if (low > high) std::swap(low, high);
-    }
-    std::ranges::sort(pairs);
-    std::vector<Vertex> kept;
-    std::vector<DirectedEdge> first_kept(1, 0);
-    for (Vertex vertex = 0; vertex < vertex_count(); ++vertex) {
-        for (const Vertex neighbour : neighbours(vertex)) {
-            const std::pair<Vertex, Vertex> pair = std::minmax(vertex, neighbour);
-            if (std::ranges::binary_search(pairs, pair)) kept.push_back(neighbour);
-        }
-        first_kept.push_back(static_cast<DirectedEdge>(kept.size()));
-    }
-    neighbours_ = std::move(kept);
-    first_edge_ = std::move(first_kept);
 }
 
 }  // namespace conelane

@@ -5,9 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -23,10 +21,6 @@ inline constexpr Side kRight = 1;
     return 1 - side;
 }
 
-/// Gives the pairs of points that may be joined, each once in any order; pairs that are too far apart are
-/// allowed.
-using EdgeRule = std::function<std::vector<std::pair<Vertex, Vertex>>(std::span<const Point>)>;
-
 /// Which points may follow each other on a boundary: the simple undirected graph of equations (1) and (2) of
 /// the CLC paper, all pairs at most d_max apart. Two points at the same place are not joined: a segment
 /// between them would have no direction. `build` reuses memory from call to call.
@@ -35,11 +29,9 @@ class SearchGraph {
     /// A neighbour together with the number of the directed edge that leads to it.
     using DirectedEdge = std::uint32_t;
 
-    /// With a rule, only its pairs that are at most d_max apart are joined.
-    void build(std::span<const Point> points, double d_max_m, const EdgeRule& rule = {});
+    void build(std::span<const Point> points, double d_max_m);
     /// The same within a budget of time and memory. Returns false if it is spent: then there is no graph.
-    [[nodiscard]] bool build(std::span<const Point> points, double d_max_m, const EdgeRule& rule,
-                             SearchBudget& budget);
+    [[nodiscard]] bool build(std::span<const Point> points, double d_max_m, SearchBudget& budget);
 
     [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
     /// Each undirected edge counts twice.
@@ -64,8 +56,6 @@ class SearchGraph {
     [[nodiscard]] DirectedEdge first_edge(Vertex vertex) const { return first_edge_[vertex]; }
 
   private:
-    void keep_pairs(std::vector<std::pair<Vertex, Vertex>> pairs);
-
     struct Cell {
         double column;
         double row;

@@ -2,11 +2,9 @@
 
 #include "conelane/invalid_input.hpp"
 #include "graph_search/clc/lane_features.hpp"
-#include "graph_search/front/front_weights_reader.hpp"
+#include "graph_search/front/front_weights.hpp"
 #include "graph_search/shared/weights_reader.hpp"
 #include "graph_search/weights/weight_files.hpp"
-
-#include <string>
 
 namespace conelane {
 namespace {

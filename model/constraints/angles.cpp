@@ -10,16 +10,10 @@ void turn_products(const FamilyContext& context) {
         const auto index = static_cast<std::int32_t>(t);
         const int edge_i = columns.edge[turn.edge_i];
         const int edge_k = columns.edge[turn.edge_k];
-        rows.begin({"turn_needs_both", {index}}, -kInfinity, 0.0);  // (22)
-        rows.add(columns.turn[t], 2.0);
-        rows.add(edge_i, -1.0);
-        rows.add(edge_k, -1.0);
-        rows.end();
-        rows.begin({"both_make_turn", {index}}, -1.0, kInfinity);  // (23)
-        rows.add(columns.turn[t], 1.0);
-        rows.add(edge_i, -1.0);
-        rows.add(edge_k, -1.0);
-        rows.end();
+        rows.write({"turn_needs_both", {index}}, -kInfinity, 0.0,
+                   {{columns.turn[t], 2.0}, {edge_i, -1.0}, {edge_k, -1.0}});  // (22)
+        rows.write({"both_make_turn", {index}}, -1.0, kInfinity,
+                   {{columns.turn[t], 1.0}, {edge_i, -1.0}, {edge_k, -1.0}});  // (23)
     }
 }
 

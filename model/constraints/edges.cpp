@@ -15,12 +15,9 @@ void edge_limits(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     for (std::size_t edge = 0; edge < problem.edges.size(); ++edge) {
         if (!problem.edges[edge].high_cost) continue;
-        rows.begin({"spacing_limit",
-                    {static_cast<std::int32_t>(problem.edges[edge].i),
-                     static_cast<std::int32_t>(problem.edges[edge].j)}},
-                   0.0, 0.0);
-        rows.add(columns.edge[edge], 1.0);
-        rows.end();
+        const auto index = [](std::size_t cone) { return static_cast<std::int32_t>(cone); };
+        rows.write({"spacing_limit", {index(problem.edges[edge].i), index(problem.edges[edge].j)}}, 0.0, 0.0,
+                   {{columns.edge[edge], 1.0}});
     }
 }
 
@@ -29,9 +26,7 @@ void turn_limits(const FamilyContext& context) {
     for (std::size_t turn = 0; turn < problem.turns.size(); ++turn) {
         if (!problem.turns[turn].high_cost) continue;
         if (rows.stop()) return;
-        rows.begin({"angle_limit", {static_cast<std::int32_t>(turn)}}, 0.0, 0.0);
-        rows.add(columns.turn[turn], 1.0);
-        rows.end();
+        rows.write({"angle_limit", {static_cast<std::int32_t>(turn)}}, 0.0, 0.0, {{columns.turn[turn], 1.0}});
     }
 }
 

@@ -20,6 +20,10 @@ std::vector<bool> apart(const LaneGraphProblem& problem) {
     return are_apart;
 }
 
+bool have_cone_in_common(const ProblemEdge& a, const ProblemEdge& b) {
+    return a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j;
+}
+
 }  // namespace
 
 void far_marks(const FamilyContext& context) {
@@ -57,14 +61,6 @@ void far_distance(const FamilyContext& context) {
         }
     }
 }
-
-namespace {
-
-bool have_cone_in_common(const ProblemEdge& a, const ProblemEdge& b) {
-    return a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j;
-}
-
-}  // namespace
 
 // Exactly two endpoints are far, by (3) and (11). If a path ends at a far cone i with the edge {k, i}, then
 // the other path ends at a far cone j within d_max of i, with an edge {l, j} that is compatible with {k, i}:

@@ -5,11 +5,9 @@ namespace conelane::constraints {
 void width_pairs(const FamilyContext& context) {
     for (const auto& [first, second] : context.problem.conflicts) {
         if (context.rows.stop()) return;
-        context.rows.begin({"width", {static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)}},
-                           -kInfinity, 1.0);
-        context.rows.add(context.columns.edge[first], 1.0);
-        context.rows.add(context.columns.edge[second], 1.0);
-        context.rows.end();
+        context.rows.write({"width", {static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)}},
+                           -kInfinity, 1.0,
+                           {{context.columns.edge[first], 1.0}, {context.columns.edge[second], 1.0}});
     }
 }
 

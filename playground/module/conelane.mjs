@@ -3,6 +3,7 @@
 
 const COLORS = ["unknown", "blue", "yellow", "orange", "big_orange"]; // in the order of ConeColor
 const MISSIONS = ["trackdrive", "autocross", "acceleration", "skidpad"];
+const encoder = new TextEncoder(), decoder = new TextDecoder();
 
 /** An error of the library, with its message; or a module that stopped, which starts again with the next call. */
 export class ConelaneError extends Error {
@@ -62,7 +63,6 @@ function idsOf(lane, side) {
 /** One instance of the module, which an error ends. */
 class Instance {
   constructor(module) {
-    const encoder = new TextEncoder(), decoder = new TextDecoder();
     let exports = null;
     const view = () => new DataView(exports.memory.buffer);
     const known = {
@@ -90,14 +90,12 @@ class Instance {
     exports = new WebAssembly.Instance(module, imports).exports;
     exports._initialize();
     this.exports = exports;
-    this.encoder = encoder;
-    this.decoder = decoder;
   }
 
   /** Calls an export. `lists` are given as pointer and count, a text as pointer and size; the answer is parsed. */
   call(name, given) {
     const { exports } = this;
-    const words = given.map((one) => (typeof one === "string" ? this.encoder.encode(one) : one));
+    const words = given.map((one) => (typeof one === "string" ? encoder.encode(one) : one));
     let doubles = 0;
     const length = (one) => (one instanceof Uint8Array ? Math.ceil(one.length / 8) : Array.isArray(one) ? one.length : 0);
     for (const one of words) doubles += length(one);
@@ -116,7 +114,7 @@ class Instance {
 
   answer() {
     const bytes = new Uint8Array(this.exports.memory.buffer, this.exports.conelane_text(), this.exports.conelane_text_size());
-    return JSON.parse(this.decoder.decode(bytes));
+    return JSON.parse(decoder.decode(bytes));
   }
 }
 
@@ -202,17 +200,15 @@ class Conelane {
     return this.#ask("conelane_solve", [numbersOf(scene, true), parameters, limitOf(options)]);
   }
 
-  check(scene, edges, options = {}) {
+  #askOfEdges(name, scene, edges, options) {
     const parameters = this.#parameterNumbers(options.parameters ?? {});
     const numbers = numbersOf(scene, true);
-    return this.#ask("conelane_check", [numbers, parameters, this.#edgeNumbers(scene, edges)]);
+    return this.#ask(name, [numbers, parameters, this.#edgeNumbers(scene, edges)]);
   }
 
-  price(scene, edges, options = {}) {
-    const parameters = this.#parameterNumbers(options.parameters ?? {});
-    const numbers = numbersOf(scene, true);
-    return this.#ask("conelane_price", [numbers, parameters, this.#edgeNumbers(scene, edges)]);
-  }
+  check(scene, edges, options = {}) { return this.#askOfEdges("conelane_check", scene, edges, options); }
+
+  price(scene, edges, options = {}) { return this.#askOfEdges("conelane_price", scene, edges, options); }
 
   course(name, seed = 0, every_m = 1) {
     if (!this.courses.includes(name)) refuse(`course: there is no '${name}', only ${this.courses.join(", ")}`);

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdlib>
-#include <exception>
 #include <new>
 #include <stdexcept>
 #include <typeinfo>

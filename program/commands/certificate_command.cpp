@@ -4,10 +4,9 @@
 #include "evaluation/formats/certificate_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
 #include "evaluation/world/ground_truth.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -15,16 +14,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CertificateOptions {
@@ -37,10 +29,6 @@ struct CertificateOptions {
     std::int64_t max_steps = 5'000'000;
     ParameterSource parameters;
 };
-
-Scene cone_set(const Scene& scene, std::optional<std::size_t> nearest) {
-    return nearest ? nearest_ahead(scene, *nearest) : scene;
-}
 
 CertificateRecord to_record(const Scene& scene, const BoundCertificate& certificate) {
     CertificateRecord record;
@@ -86,40 +74,35 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
     return certificate;
 }
 
-/// Certificates for each scene of the file, with the name of what they prove.
-template <typename Certify>
-auto certificates(const CertificateOptions& options, const RldParameters& parameters,
-                  const Certify& certify) {
+bool claims_nothing(double bound) {
+    return !(bound > -SearchCertificate::kMaxBound);
+}
+
+/// Writes a certificate of each scene of the file, and prints the scenes of which nothing was proven. Throws
+/// CLI::RuntimeError with exit code 1 if these are all.
+template <typename Certify, typename Write>
+void certify_all(const CertificateOptions& options, const RldParameters& parameters, const Certify& certify,
+                 const Write& write) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<std::invoke_result_t<Certify, const Scene&>> records;
-    records.reserve(scenes.size());
-    Progress progress("certify", scenes.size());
-    for (const AnnotatedScene& annotated : scenes) {
-        records.push_back(certify(cone_set(annotated.scene, options.nearest)));
-        records.back().nearest = options.nearest;
-        records.back().parameters = tag_of(options.parameters.name, parameters);
-        progress.advance();
+    {
+        Progress progress("certify", scenes.size());
+        for (const AnnotatedScene& annotated : scenes) {
+            records.push_back(certify(cones_asked_for(annotated.scene, options.nearest)));
+            records.back().nearest = options.nearest;
+            records.back().parameters = tag_of(options.parameters.name, parameters);
+            progress.advance();
+        }
     }
-    return records;
-}
-
-std::vector<SearchCertificateRecord> search_certificates(const CertificateOptions& options,
-                                                         const RldParameters& parameters) {
-    auto records = certificates(options, parameters, [&](const Scene& scene) {
-        const SearchCertificate certificate =
-            certify_search(make_problem(scene, parameters), options.time_limit_ms);
-        return to_search_record(scene, certificate);
-    });
-    return records;
-}
-
-std::vector<CertificateRecord> root_certificates(const CertificateOptions& options,
-                                                 const RldParameters& parameters) {
-    if (parameters.pairing != Pairing::near_far)
-        throw InvalidInput("--params", "root certificates are for the pairing near_far");
-    return certificates(options, parameters, [&](const Scene& scene) {
-        return to_record(scene, certify_root_bound(make_problem(scene, parameters), options.time_limit_ms));
-    });
+    write(options.out, records);
+    fmt::print("{} certificates in {}\n", records.size(), options.out);
+    std::size_t unproven = 0;
+    for (const auto& record : records) {
+        if (!claims_nothing(record.bound)) continue;
+        ++unproven;
+        fmt::print(stderr, "{}: nothing is claimed: no bound was proven in time\n", record.scene);
+    }
+    if (unproven > 0 && unproven == records.size()) throw CLI::RuntimeError(1);
 }
 
 /// Calls `verify(record, scene)` for each record with the cones that it is about: those of the options, or
@@ -137,7 +120,7 @@ void for_each_record(const CertificateOptions& options, const RldParameters& par
     Progress progress("verify", records.size());
     for (const Record& record : records) {
         const Scene& scene = scenes.of(record.scene, options.verify, record.line).scene;
-        verify(record, cone_set(scene, options.nearest ? options.nearest : record.nearest));
+        verify(record, cones_asked_for(scene, options.nearest ? options.nearest : record.nearest));
         progress.advance();
     }
 }
@@ -200,40 +183,24 @@ void verify_searches(const CertificateOptions& options, const RldParameters& par
     if (refused + unverified > 0) throw CLI::RuntimeError(1);
 }
 
-bool claims_nothing(double bound) {
-    return !(bound > -SearchCertificate::kMaxBound);
-}
-
-/// Prints the scenes of which nothing was proven. Throws CLI::RuntimeError with exit code 1 if these are all.
-template <typename Record>
-void report_unproven(const std::vector<Record>& records) {
-    std::size_t unproven = 0;
-    for (const Record& record : records) {
-        if (!claims_nothing(record.bound)) continue;
-        ++unproven;
-        fmt::print(stderr, "{}: nothing is claimed: no bound was proven in time\n", record.scene);
-    }
-    if (unproven > 0 && unproven == records.size()) throw CLI::RuntimeError(1);
-}
-
 void run(const CertificateOptions& options, const RldParameters& parameters) {
-    if (options.verify.empty()) {
-        if (options.whole) {
-            const auto records = search_certificates(options, parameters);
-            write_search_certificates(options.out, records);
-            fmt::print("{} certificates in {}\n", records.size(), options.out);
-            report_unproven(records);
-        } else {
-            const auto records = root_certificates(options, parameters);
-            write_certificates(options.out, records);
-            fmt::print("{} certificates in {}\n", records.size(), options.out);
-            report_unproven(records);
-        }
-    } else if (options.whole || holds_search_certificates(options.verify)) {
-        verify_searches(options, parameters);
-    } else {
-        verify_bounds(options, parameters);
+    if (!options.verify.empty()) {
+        const bool whole = options.whole || holds_search_certificates(options.verify);
+        return whole ? verify_searches(options, parameters) : verify_bounds(options, parameters);
     }
+    const auto problem_of = [&](const Scene& scene) { return make_problem(scene, parameters); };
+    if (options.whole) {
+        const auto certify = [&](const Scene& scene) {
+            return to_search_record(scene, certify_search(problem_of(scene), options.time_limit_ms));
+        };
+        return certify_all(options, parameters, certify, write_search_certificates);
+    }
+    if (parameters.pairing != Pairing::near_far)
+        throw InvalidInput("--params", "root certificates are for the pairing near_far");
+    const auto certify = [&](const Scene& scene) {
+        return to_record(scene, certify_root_bound(problem_of(scene), options.time_limit_ms));
+    };
+    certify_all(options, parameters, certify, write_certificates);
 }
 
 }  // namespace
@@ -266,4 +233,4 @@ void add_certify_command(CLI::App& program) {
     command.callback([options] { run(*options, options->parameters.load()); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -1,11 +1,10 @@
 #include "conelane/check.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "evaluation/proofs/claim_verdict.hpp"
 #include "evaluation/proofs/exact_program.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
+#include "evaluation/world/ground_truth.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
@@ -14,20 +13,14 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <memory>
-#include <optional>
 #include <set>
 #include <stdexcept>
-#include <string>
-#include <unordered_map>
 #include <utility>
 #include <variant>
-#include <vector>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CheckOptions {
@@ -69,8 +62,7 @@ struct ExactTotals {
 
 /// The record's edges, or what is wrong with them.
 std::variant<LaneGraph, std::string> lane_graph_of(const SolutionRecord& record, const Scene& scene) {
-    std::unordered_map<ConeId, std::size_t> index_of;
-    for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of.emplace(scene.cones[i].id, i);
+    const auto index_of = index_by_id(scene);
     LaneGraph graph;
     for (const auto& [a, b] : record.edges) {
         for (const ConeId id : {a, b}) {
@@ -148,7 +140,7 @@ class Check {
         ConeSet& set = place->second;
         if (!is_new) return set;
         const AnnotatedScene& annotated = scenes_.of(record.scene, options_.solutions, record.line);
-        set.scene = nearest ? nearest_ahead(annotated.scene, *nearest) : annotated.scene;
+        set.scene = cones_asked_for(annotated.scene, nearest);
         if (!annotated.ground_truth) return set;
         Lane lane = *annotated.ground_truth;
         if (nearest) lane = cut_to_nearest(std::move(lane), annotated.scene, *nearest);
@@ -311,8 +303,8 @@ void add_check_command(CLI::App& program) {
         "`optimal` and `infeasible` pass if they are proven within the time limit: by multipliers from the "
         "scene alone, for `infeasible` by the checker's own search, for path-pair by a certificate, or else "
         "by another exact solver. They fail if a lane graph of the file, of the ground truth or of that "
-        "solver "
-        "is better; otherwise they are unverified. The bound of `feasible` is not proven. A scene without an "
+        "solver is better; otherwise they are unverified. The bound of `feasible` is not proven. A scene "
+        "without an "
         "answer fails. `stopped` and `error` claim nothing and are counted separately.");
     auto options = std::make_shared<CheckOptions>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
@@ -330,4 +322,4 @@ void add_check_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

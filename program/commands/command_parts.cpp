@@ -2,27 +2,32 @@
 
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
+#include "graph_search/front/front_weights.hpp"
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kRefused = 2;  ///< exit code where the package has printed the reason
 
 void write_page(const fs::path& directory) {
     const fs::path page = directory / "report.html";
@@ -33,8 +38,7 @@ void write_page(const fs::path& directory) {
         return;
     } catch (const PackageRefused&) {
         fmt::print("results: {}, without a page\n", directory.string());
-        constexpr int kFailed = 2;
-        throw CLI::RuntimeError(kFailed);  // it has printed the reason
+        throw CLI::RuntimeError(kRefused);
     } catch (const std::exception&) {
         fmt::print("results: {}, without a page\n", directory.string());
         throw;
@@ -66,6 +70,23 @@ const AnnotatedScene& ScenesById::of(const std::string& id, const fs::path& file
     const auto found = by_id_.find(id);
     if (found != by_id_.end()) return *found->second;
     throw InputError(file, line, "scene", "'" + id + "' is not in " + file_.string());
+}
+
+CLI::Option* add_number_option(CLI::App& command, const std::string& name, double& value, double low,
+                               double high, const std::string& help) {
+    return command.add_option(name, value, help)
+        ->check(CLI::Range(low, high) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
+        ->capture_default_str();
+}
+
+CLI::Option* add_word_option(CLI::App& command, const std::string& name, std::string& value,
+                             const std::vector<std::string>& words, const std::string& help) {
+    CLI::Option* const option = command.add_option(name, value, help)->check(CLI::IsMember(words));
+    return value.empty() ? option : option->capture_default_str();
+}
+
+Scene cones_asked_for(const Scene& scene, std::optional<std::size_t> nearest) {
+    return nearest ? nearest_ahead(scene, *nearest) : scene;
 }
 
 LineOutput::LineOutput(const std::string& out) {
@@ -110,4 +131,47 @@ void report_errors(const AnswerErrors& errors) {
     if (errors.any_answered_nothing()) throw CLI::RuntimeError(kNothingAnswered);
 }
 
-}  // namespace conelane::experiments
+void report_errors(std::span<const LaneRecord> answers) {
+    AnswerErrors errors;
+    for (const LaneRecord& record : answers) add_answer_of(errors, record);
+    report_errors(errors);
+}
+
+void call_package(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const PackageRefused&) {
+        throw CLI::RuntimeError(kRefused);
+    }
+}
+
+void add_field_options(CLI::App& command, const OptionFields& fields) {
+    for (const OptionField& field : fields) {
+        const std::string name = field.option;
+        if (name.empty()) continue;
+        std::visit(
+            [&](const auto& value) {
+                using Value = std::decay_t<decltype(value)>;
+                if constexpr (std::is_same_v<Value, bool*>) {
+                    command.add_flag(name, *value, field.help);
+                } else if constexpr (std::is_same_v<Value, std::string*>) {
+                    command.add_option(name, *value, field.help);
+                } else if constexpr (std::is_same_v<Value, std::vector<std::string>*> ||
+                                     std::is_same_v<Value, std::vector<double>*>) {
+                    CLI::Option* const list = command.add_option(name, *value, field.help)->delimiter(',');
+                    if (!value->empty()) list->capture_default_str();
+                } else if constexpr (!std::is_same_v<Value, const char*>) {
+                    CLI::Option* const option =
+                        command.add_option(name, *value, field.help)->capture_default_str();
+                    if constexpr (std::is_integral_v<std::remove_pointer_t<Value>>) {
+                        if (std::isfinite(field.range.most))
+                            option->check(whole_number(static_cast<std::size_t>(field.range.least),
+                                                       static_cast<std::size_t>(field.range.most)));
+                    }
+                }
+            },
+            field.value);
+    }
+}
+
+}  // namespace conelane::program

@@ -4,16 +4,20 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/world/annotated_scene.hpp"
 #include "experiments/comparison/comparison.hpp"
+#include "learning/training/option_field.hpp"
+#include "program/commands/commands.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 /// What several commands do.
-namespace conelane::experiments {
+namespace conelane::program {
 
 /// Stands for standard input and standard output.
 inline constexpr const char* kStandardStream = "-";
@@ -39,6 +43,18 @@ class ScenesById {
     std::vector<AnnotatedScene> scenes_;
     std::unordered_map<std::string, const AnnotatedScene*> by_id_;
 };
+
+/// Declares the fields that have an option. The values must outlive the command.
+void add_field_options(CLI::App& command, const OptionFields& fields);
+/// Declares a number in a range, with its default. CLI::Range alone would accept NaN.
+CLI::Option* add_number_option(CLI::App& command, const std::string& name, double& value, double low,
+                               double high, const std::string& help);
+/// Declares one of some words, with its default if it has one.
+CLI::Option* add_word_option(CLI::App& command, const std::string& name, std::string& value,
+                             const std::vector<std::string>& words, const std::string& help);
+
+/// The scene with only its `nearest` cones ahead; the whole scene if that is absent.
+[[nodiscard]] Scene cones_asked_for(const Scene& scene, std::optional<std::size_t> nearest);
 
 /// Output line by line: a file that appears when it is complete, or standard output at once.
 class LineOutput {
@@ -67,5 +83,9 @@ void finish_comparison(const ComparisonOutcome& outcome, const std::filesystem::
 /// answers. Throws CLI::RuntimeError of exit code 1 if a method answered nothing at all. What the command
 /// writes is in place by then.
 void report_errors(const AnswerErrors& errors);
+void report_errors(std::span<const LaneRecord> answers);
 
-}  // namespace conelane::experiments
+/// Runs a call of the Python package. Throws CLI::RuntimeError if it refused, which has printed the reason.
+void call_package(const std::function<void()>& call);
+
+}  // namespace conelane::program

@@ -1,20 +1,13 @@
-#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CompareOptions {
@@ -24,24 +17,12 @@ struct CompareOptions {
     ParameterSource parameters;
     std::string directory;
     std::optional<std::size_t> nearest;
-    std::vector<std::size_t> sizes{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60};
+    std::vector<std::string> sizes{"6", "8", "10", "12", "14", "16", "20", "24", "30", "40", "50", "60"};
     std::vector<std::filesystem::path> shards;
     bool is_full = false;
     bool is_by_size = false;
     bool is_merge = false;
 };
-
-Shard parse_shard(const std::string& text) {
-    Shard shard;
-    const std::size_t slash = text.find('/');
-    const char* const end = text.data() + text.size();
-    const auto index = std::from_chars(text.data(), end, shard.index);
-    if (slash != std::string::npos && index.ec == std::errc{} && index.ptr == text.data() + slash) {
-        const auto count = std::from_chars(text.data() + slash + 1, end, shard.count);
-        if (count.ec == std::errc{} && count.ptr == end && shard.index < shard.count) return shard;
-    }
-    throw CLI::ValidationError("--shard", "'" + text + "' is not I/N with 0 <= I < N");
-}
 
 void add_options(CLI::App& command, CompareOptions& options) {
     ComparisonOptions& comparison = options.comparison;
@@ -61,9 +42,8 @@ void add_options(CLI::App& command, CompareOptions& options) {
     command.add_flag("--candidates", comparison.run.limits.keep_candidates,
                      "score every enumerated lane too");
     add_parameter_options(command, options.parameters, "the defaults");
-    command.add_option_function<std::string>(
-        "--shard", [&comparison](const std::string& text) { comparison.shard = parse_shard(text); },
-        "I/N: every N-th lap from the I-th on, I from 0; join them by `conelane compare --merge`");
+    add_shard_option(command, comparison.shard,
+                     "every N-th lap from the I-th on, I from 0; join them by `conelane compare --merge`");
     command
         .add_option("--out", options.directory,
                     "directory of the results; a run that was stopped there resumes")
@@ -79,10 +59,8 @@ void add_options(CLI::App& command, CompareOptions& options) {
         "every 13.2 m, condition paper, and the methods rld-cbc, rld-pair, rld-shape and clc");
     add_nearest_option(command, options.nearest, "the same cone-set size for every method");
     command.get_option("--nearest")->excludes(&by_size);
-    command.add_option("--sizes", options.sizes, "cone-set sizes of --by-size")
+    add_sizes_option(command, options.sizes, "cone-set sizes of --by-size; `all` for all visible cones")
         ->needs(&by_size)
-        ->delimiter(',')
-        ->check(whole_number(1, kMaxCones))
         ->capture_default_str();
     CLI::Option& merging = *command.add_flag("--merge", options.is_merge,
                                              "join the shards of one comparison, named in any order");
@@ -145,7 +123,7 @@ void add_compare_command(CLI::App& program) {
         }
         choose_defaults(command, *options);
         std::vector<std::optional<std::size_t>> sizes{options->nearest};
-        if (options->is_by_size) sizes.assign(options->sizes.begin(), options->sizes.end());
+        if (options->is_by_size) sizes = cone_set_sizes("--sizes", options->sizes);
         for (const std::string& detector : split_detectors(options->detectors)) {
             for (const std::optional<std::size_t>& size : sizes)
                 options->comparison.methods.push_back(parse_method(detector, size));
@@ -154,4 +132,4 @@ void add_compare_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -1,14 +1,7 @@
 #include "experiments/cross_check/cross_check.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CrossCheckCommandOptions {
@@ -72,4 +65,4 @@ void add_cross_check_command(CLI::App& study) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -1,14 +1,8 @@
 #include "experiments/cross_validation/cross_validation.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/field_options.hpp"
 
-#include <memory>
-#include <string>
-#include <vector>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct CrossValidateOptions {
@@ -24,16 +18,10 @@ struct CrossValidateOptions {
 };
 
 OptionFields learning_fields(LearningOptions& learning) {
-    return {{"--variants",
-             "",
-             &learning.variants,
-             {0.0, 100.0},
+    return {{"--variants", "", &learning.variants, OptionRange{0.0, 100.0},
              "number of variants of each course that networks learn from too: stretched, every second one "
              "reversed"},
-            {"--evaluations",
-             "",
-             &learning.evaluations,
-             {1.0, 100'000.0},
+            {"--evaluations", "", &learning.evaluations, OptionRange{1.0, 100'000.0},
              "number of evaluations for each set of tuned parameters"},
             {"--front-steps", "", &learning.front_steps, kPositive,
              "of the training of front, as a share of those of the shipped weights"},
@@ -123,4 +111,4 @@ void add_cross_validate_command(CLI::App& program) {
     command.callback([options] { run(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

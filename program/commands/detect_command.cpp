@@ -2,24 +2,14 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <iostream>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct DetectOptions {
@@ -92,9 +82,7 @@ void detect(DetectOptions& options) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     const std::vector<LaneRecord> lanes = run(method, scenes, options.run);
     write_lanes(options.out, lanes);
-    AnswerErrors errors;
-    for (const LaneRecord& record : lanes) add_answer_of(errors, record);
-    report_errors(errors);
+    report_errors(lanes);
 }
 
 void list_solvers() {
@@ -105,38 +93,16 @@ void list_solvers() {
     }
 }
 
-/// Only the id is read, which is first in each question: parsing JSON, or std::cin, would take longer than
-/// the round trip itself.
-void echo() {
-    constexpr std::string_view kBegin = R"({"id":")";
-    char* buffer = nullptr;
-    std::size_t capacity = 0;
-    for (ssize_t length = 0; (length = ::getline(&buffer, &capacity, stdin)) > 0;) {
-        const std::string_view line(buffer, static_cast<std::size_t>(length));
-        if (!line.starts_with(kBegin)) continue;  // a reset
-        const std::string_view rest = line.substr(kBegin.size());
-        const std::string id(rest.substr(0, rest.find('"')));
-        std::printf(R"({"scene":"%s","status":"none"})"
-                    "\n",
-                    id.c_str());
-        std::fflush(stdout);
-    }
-    std::free(buffer);
-}
-
 }  // namespace
 
 void add_methods_command(CLI::App& program) {
     CLI::App& command =
         *program.add_subcommand("methods", "the detection methods of this build, or its RLD solvers");
-    auto all = std::make_shared<bool>(false);
     auto solvers = std::make_shared<bool>(false);
-    command.add_flag("--all", *all, "also variants that leave a part out, to show what the part is worth");
-    command.add_flag("--solvers", *solvers, "the RLD solvers instead")->excludes("--all");
-    command.callback([all, solvers] {
+    command.add_flag("--solvers", *solvers, "the RLD solvers instead");
+    command.callback([solvers] {
         if (*solvers) return list_solvers();
         for (const Method& method : known_methods()) {
-            if (method.is_ablation && !*all) continue;
             const ConeSet set = cone_set(*method.recipe, {});
             std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
             if (set.context) cones += fmt::format(" of {}", *set.context);
@@ -173,12 +139,4 @@ void add_detect_command(CLI::App& program) {
     command.callback([options] { detect(*options); });
 }
 
-void add_echo_command(CLI::App& program) {
-    CLI::App& command =
-        *program.add_subcommand("echo",
-                                "reads scenes from standard input, in the protocol of programs from outside, "
-                                "and answers each at once with status none: measures the round trip");
-    command.callback(echo);
-}
-
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -6,20 +6,14 @@
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/options/shared_options.hpp"
+#include "experiments/report/package.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <iostream>
-#include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 /// Whatever `drive` writes.
@@ -42,6 +36,8 @@ struct FollowOptions : DriveOutput {  // `out`: "-" for standard output
     std::optional<int> laps;
     double interval_s = 0.1;  ///< between frames without time
     double time_limit_ms = 50.0;
+    std::string page;    ///< empty: none
+    std::string python;  ///< that makes the page; empty: the first found
 };
 
 std::string detector_of(const FollowOptions& options) {
@@ -77,11 +73,22 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
     }
 }
 
+/// The page that plays a run, of its frames and plans.
+void write_page(const FollowOptions& options, const std::filesystem::path& plans) {
+    const std::filesystem::path made = plans.parent_path() / "page.html";
+    call_package([&] {
+        run_package("report.replay", {options.frames, plans, made, fmt::format("{}", options.interval_s)},
+                    options.python, false);
+    });
+    put_in_place({{made, options.page}});
+}
+
 /// The plans of a run, where they are written, not only the course.
 class PlanSink {
   public:
     explicit PlanSink(const FollowOptions& options) : detector_(detector_of(options)) {
         if (options.format == "json") output_.emplace(options.out);
+        if (!options.page.empty()) for_page_.emplace((folder_.emplace().path() / "plans.jsonl").string());
     }
     void put(const FrameLine& line, const Plan& plan) {
         write(plan_line(line.number, line.frame->time_s, plan));
@@ -95,7 +102,11 @@ class PlanSink {
         write(refused_frame_line(line.number, message));
         errors_.add_error(detector_, std::to_string(line.number), message);
     }
-    void commit() {
+    void commit(const FollowOptions& options) {
+        if (for_page_) {
+            for_page_->commit();
+            write_page(options, folder_->path() / "plans.jsonl");
+        }
         if (output_) output_->commit();
     }
     void report() const { report_errors(errors_); }
@@ -103,10 +114,13 @@ class PlanSink {
   private:
     void write(const std::string& text) {
         if (output_) output_->put(text);
+        if (for_page_) for_page_->put(text);
     }
 
     std::string detector_;
     std::optional<LineOutput> output_;
+    std::optional<TemporaryFolder> folder_;
+    std::optional<LineOutput> for_page_;
     AnswerErrors errors_;
 };
 
@@ -155,6 +169,9 @@ void follow_frames(const FollowOptions& options) {
     if (options.format != "json" && options.out == kStandardStream) {
         throw InvalidInput("--out", "is a file where --format is " + options.format);
     }
+    if (options.frames == kStandardStream && !options.page.empty()) {
+        throw InvalidInput("--page", "takes the frames of a file");
+    }
     const std::unique_ptr<Planner> planner = planner_of(options);
     PlanSink sink(options);
     if (options.frames == kStandardStream) {
@@ -163,7 +180,7 @@ void follow_frames(const FollowOptions& options) {
         answer_file(options, *planner, sink);
     }
     if (options.format != "json") write_course(options, *planner);
-    sink.commit();
+    sink.commit(options);
     sink.report();
 }
 
@@ -207,12 +224,6 @@ DrivableRecord drive(const LaneRecord& record, const Scene& scene, const DriveOp
     }
 }
 
-AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
-    AnswerErrors errors;
-    for (const LaneRecord& record : records) add_answer_of(errors, record);
-    return errors;
-}
-
 void drive_all(const DriveOptions& options) {
     for (const auto& [name, value] : {std::pair("--lanes", &options.lanes), {"--scenes", &options.scenes}}) {
         if (value->empty()) throw InvalidInput(name, "is required, or --follow");
@@ -225,7 +236,7 @@ void drive_all(const DriveOptions& options) {
         lanes.push_back(drive(record, scenes.of(record.scene, options.lanes, record.line).scene, options));
     if (options.format == "json") {
         write_drivable_lanes(options.out, lanes);
-        report_errors(errors_among(records));
+        report_errors(records);
         return;
     }
     const LaneRecord& only = records.front();
@@ -246,19 +257,23 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
         "--follow", options.frames,
         "frames of a run, one plan a line: *.frames.jsonl, a run of ft-fsd (JSON), - for standard input");
     for (const char* const other : {"--lanes", "--scenes", "--id"}) follow->excludes(other);
-    command.add_option("--mission", options.mission, "trackdrive, autocross, acceleration, skidpad")
-        ->needs(follow)
-        ->check(CLI::IsMember({"trackdrive", "autocross", "acceleration", "skidpad"}))
-        ->capture_default_str();
+    add_word_option(command, "--mission", options.mission,
+                    {"trackdrive", "autocross", "acceleration", "skidpad"},
+                    "trackdrive, autocross, acceleration, skidpad")
+        ->needs(follow);
     command.add_option("--laps", options.laps, "laps of trackdrive (10) and autocross (1)")
         ->needs(follow)
         ->check(CLI::Range(1, 1'000'000));
     command.add_option("--weights", options.weights, "weights of front or front-warm, see detect")
         ->needs(follow);
-    command.add_option("--interval", options.interval_s, "time between frames that have no time [s]")
-        ->needs(follow)
-        ->check(CLI::Range(0.001, 10.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
-        ->capture_default_str();
+    add_number_option(command, "--interval", options.interval_s, 0.001, 10.0,
+                      "time between frames that have no time [s]")
+        ->needs(follow);
+    add_output_option(command, "--page", options.page,
+                      "PAGE.html, which plays the run: cones, lanes, trust, where there was no lane and why")
+        ->needs(follow);
+    command.add_option("--python", options.python, "interpreter that makes the page; python3 without it")
+        ->needs("--page");
     add_time_limit_option(command, options.time_limit_ms);
     command.get_option("--time-limit")->needs(follow);
 }
@@ -273,24 +288,19 @@ void add_drive_command(CLI::App& program) {
     auto options = std::make_shared<DriveOptions>();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl");
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl, the scenes of the lanes");
-    command
-        .add_option("--format", options->format,
+    add_word_option(command, "--format", options->format, {"json", "tum", "ftfsd"},
                     "json: a line for each lane; tum: x_m,y_m,w_tr_right_m,w_tr_left_m; "
-                    "ftfsd: s_m,x_m,y_m,curvature_1pm; the last two hold one lane, with --follow the course")
-        ->check(CLI::IsMember({"json", "tum", "ftfsd"}))
-        ->capture_default_str();
+                    "ftfsd: s_m,x_m,y_m,curvature_1pm; the last two hold one lane, with --follow the course");
     add_output_option(command, "--out", options->out,
                       "the file to write; with --follow - writes each line to standard output at once", true)
         ->required();
     command.add_option("--id", options->id, "only lanes of this scene");
     command.add_option("--method", options->detector,
                        "only lanes of this method; with --follow the detector, front-warm by default");
-    command
-        .add_option("--step", options->drivable.step_m, "distance from point to point [m], in [0.01, 100]")
-        ->check(CLI::Range(0.01, 100.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
-        ->capture_default_str();
+    add_number_option(command, "--step", options->drivable.step_m, 0.01, 100.0,
+                      "distance from point to point [m], in [0.01, 100]");
     add_follow_options(command, *options);
     command.callback([options] { options->frames.empty() ? drive_all(*options) : follow_frames(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -5,10 +5,8 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "evaluation/outside/solver_input.hpp"
-#include "evaluation/proofs/claim_verdict.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "model/deadline.hpp"
+#include "evaluation/proofs/answer_check.hpp"
+#include "model/connecting_flow.hpp"
 #include "model/lane_graph_model.hpp"
 #include "model/strip_model.hpp"
 #include "program/commands/command_parts.hpp"
@@ -20,17 +18,11 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
 
 // Export and import are about the program of one scene. Rows that a solve adds on demand, (5) and the
-// pairing, are too many to write in full. So without --all-rows, an optimum of the file is only a bound for
-// the scene; it is the scene's optimum if its point is a lane graph.
-namespace conelane::experiments {
+// pairing, are too many to write in full; a flow replaces them. With --rows-on-demand the file has neither:
+// its optimum is only a bound for the scene, unless its point is a lane graph.
+namespace conelane::program {
 namespace {
 
 /// The scene of the program.
@@ -40,35 +32,32 @@ struct ProgramSource {
     std::string formulation = "tight";
     std::optional<std::size_t> nearest;
     ParameterSource parameters;
-    bool all_rows = false;
+    bool all_rows = true;
 };
 
 void add_program_options(CLI::App& command, ProgramSource& source) {
     command.add_option("--scenes", source.scenes, "*.scenes.jsonl")->required();
     command.add_option("--id", source.id, "id of the scene")->required();
-    command
-        .add_option("--formulation", source.formulation,
+    add_word_option(command, "--formulation", source.formulation, {"tight", "paper", "strip"},
                     "rows and columns of the program: tight, paper as printed, or strip, with hand-set "
-                    "costs or with the limits and costs of --params")
-        ->check(CLI::IsMember({"tight", "paper", "strip"}))
-        ->capture_default_str();
+                    "costs or with the limits and costs of --params");
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
     add_parameter_options(command, source.parameters, "the defaults");
-    command.add_flag("--all-rows", source.all_rows,
-                     "add no cycles and the pairing, as columns and rows of a flow: the optimum of the file "
-                     "is that of the scene");
+    command.add_flag(
+        "--all-rows,!--rows-on-demand", source.all_rows,
+        "no cycles and the pairing are in the file, as columns and rows of a flow, so its optimum "
+        "is that of the scene (the default); --rows-on-demand leaves them out");
 }
 
-Scene load_scene(const ProgramSource& source) {
-    const AnnotatedScene found = scene_named(source.id, source.scenes);
-    return source.nearest ? nearest_ahead(found.scene, *source.nearest) : found.scene;
+Scene scene_of(const ProgramSource& source) {
+    return cones_asked_for(scene_named(source.id, source.scenes).scene, source.nearest);
 }
 
 /// The program of a scene, with everything that it refers to.
 class SceneProgram {
   public:
     explicit SceneProgram(const ProgramSource& source)
-        : scene(load_scene(source)),
+        : scene(scene_of(source)),
           formulation(source.formulation == "paper" ? Formulation::paper : Formulation::tight),
           parameters(source.parameters.load()),
           problem(make_problem(scene, parameters, parts(formulation).extent)),
@@ -106,22 +95,17 @@ void write_program(const ExportOptions& options, const BinaryProgram& program) {
         throw InvalidInput("--out", "'" + options.out + "' does not end in .mps or .lp");
     AtomicFile file(options.out);
     // A name must be one word in these formats.
-    const std::string name = "conelane_" + options.source.formulation;
-    if (ending == ".mps") {
-        write_mps(file.stream(), program, name);
-    } else {
-        write_lp(file.stream(), program, name);
-    }
+    (ending == ".mps" ? write_mps : write_lp)(file.stream(), program,
+                                              "conelane_" + options.source.formulation);
     file.commit();
     fmt::print("{} columns and {} rows in {}\n", program.columns.size(), program.rows.size(), options.out);
 }
 
 void export_strip(const ExportOptions& options) {
-    StripParameters parameters = strip_parameters_of(options.source.parameters.load());
-    if (options.source.parameters.name.empty()) {
-        parameters = driving_strip_parameters();
-    }
-    const StripProblem problem = make_strip_problem(load_scene(options.source), parameters);
+    const StripParameters parameters = options.source.parameters.name.empty()
+                                           ? driving_strip_parameters()
+                                           : strip_parameters_of(options.source.parameters.load());
+    const StripProblem problem = make_strip_problem(scene_of(options.source), parameters);
     StripModel model(problem);
     if (model.build(Deadline())) throw InvalidInput("--id", "the program of the scene is too large");
     write_program(options, model.program());
@@ -225,14 +209,11 @@ void add_export_command(CLI::App& program) {
         "export",
         "the program of a scene as MPS or LP file, or with --sol another program's solution of that file as "
         "solution of the scene, for `conelane check`.\n"
-        "Without --all-rows the file leaves out the rows that conelane's solvers add on demand: no cycles "
-        "(5), "
-        "and the pairing near_far. A solution file whose point, objective or bound contradict each other or "
-        "the "
-        "program is refused, and so is an optimum that an own search within the time limit refutes; one that "
-        "it does not prove is unverified and counts as feasible. A solution with a cycle or against the "
-        "pairing "
-        "is an error");
+        "With --rows-on-demand the file leaves out the rows that conelane's solvers add on demand: no cycles "
+        "(5), and the pairing near_far. A solution file whose point, objective or bound contradict each "
+        "other or the program is refused, and so is an optimum that an own search within the time limit "
+        "refutes; one that it does not prove is unverified and counts as feasible. A solution with a cycle "
+        "or against the pairing is an error");
     auto options = std::make_shared<ExportOptions>();
     add_program_options(command, options->source);
     CLI::Option& solution =
@@ -250,4 +231,4 @@ void add_export_command(CLI::App& program) {
         [options] { options->solution.empty() ? export_program(*options) : import_solution(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

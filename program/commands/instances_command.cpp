@@ -1,20 +1,12 @@
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "experiments/instances/instance_library.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
 
-#include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <set>
-#include <string>
-#include <vector>
 
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct InstancesOptions {
@@ -62,8 +54,8 @@ void add_instances_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "instances",
         "a library of binary programs for other solvers: MPS files of the printed and the tight formulation, "
-        "the list conelane.test, conelane.solu with the optima that path-pair and CBC both proved, and "
-        "index.csv with classes and features");
+        "the list conelane.test, conelane.solu with the optima that path-pair and CBC both proved, the cone "
+        "sets, and index.csv with classes and features");
     auto options = std::make_shared<InstancesOptions>();
     InstanceOptions& instances = options->instances;
     instances.tracks = {"generated:straight", "generated:circle", "generated:curvy"};
@@ -96,4 +88,4 @@ void add_instances_command(CLI::App& program) {
     command.callback([options] { run(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -3,13 +3,11 @@
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/methods/learners.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/command_parts.hpp"
@@ -20,20 +18,14 @@
 #include <cstddef>
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <numbers>
-#include <optional>
-#include <string>
 #include <system_error>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 constexpr int kTrackdriveLaps = 10;
@@ -57,25 +49,14 @@ struct Options {
     std::string replay = "unfinished";
     RaceOptions race;
     std::optional<int> laps;
+    double fov_deg = 180.0;
+    std::string speed = "6";
     double latency_ms = 50.0;
     double start_deg = 0.0;
     double drift_deg = 0.0;
     unsigned threads = 1;
     std::string out;
 };
-
-/// CLI::Range accepts NaN.
-CLI::Validator number_in(double low, double high) {
-    return CLI::Range(low, high) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case);
-}
-
-std::optional<Mission> mission_of(const std::string& name) {
-    for (const Mission mission :
-         {Mission::trackdrive, Mission::autocross, Mission::acceleration, Mission::skidpad}) {
-        if (to_string(mission) == name) return mission;
-    }
-    return std::nullopt;
-}
 
 bool has_known_course(std::optional<Mission> mission) {
     return mission == Mission::acceleration || mission == Mission::skidpad;
@@ -86,6 +67,14 @@ struct WeightedCourse {
     RaceCourse course;
     std::shared_ptr<const WeightsBytes> weights = {};
 };
+
+/// Measures what the same car needs for a first lap and a later one, if it knows its pose and the course.
+void add_known_laps(const RaceCourse& course, const RaceOptions& as_raced, RaceResult& result) {
+    const RaceOptions options{
+        .sight = {}, .laps = 2, .by_safe = true, .limits = as_raced.limits, .latency_s = as_raced.latency_s};
+    const RaceResult known = race(course, options, truth_driver(course, options.laps, 60.0));
+    for (const std::size_t later : {0U, 1U}) result.by_lap[later].known_lap_s = known.by_lap[later].time_s;
+}
 
 std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
     return std::make_shared<const WeightsBytes>(read_front_weights_bytes(file));
@@ -163,6 +152,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 heat.result = race(course, race_options,
                                    make_driver(*entries[i].racer, course, race_options,
                                                weights ? std::optional(*weights) : std::nullopt));
+                if (race_options.by_safe) add_known_laps(course, race_options, heat.result);
                 // Keeps only the races that failed, and the first one, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();
@@ -201,7 +191,9 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"vary", options.vary},
             {"laps", options.race.laps},
             {"range_m", options.race.sight.range_m},
-            {"speed_mps", options.race.speed_mps},
+            {"fov_deg", options.fov_deg},
+            {"speed_mps", options.race.by_safe ? nlohmann::ordered_json("safe")
+                                               : nlohmann::ordered_json(options.race.speed_mps)},
             {"latency_ms", options.latency_ms},
             {"colors", options.race.sight.with_color},
             {"ids", options.ids},
@@ -231,7 +223,8 @@ class Outputs {
             if (heats[i].result.replay.empty()) continue;
             replay_.stream() << replay_json(heats[i], entries[i].course->course).dump() << "\n";
         }
-        const std::string table = race_table(heats, options.race.laps);
+        std::string table = race_table(heats, options.race.laps);
+        if (options.race.by_safe) table += "\n" + speed_table(heats);
         const std::string times = answer_time_table(heats);
         races_.stream() << json.dump(1) << "\n";
         table_.stream() << table;
@@ -263,10 +256,14 @@ void run_races(Options& options) {
     options.race.sight.condition = conditions_of(scene_options).front();
     options.race.sight.with_ids = options.ids == "tracked";
     options.race.fault = race_fault(options.fault);
+    options.race.sight.fov_rad = options.fov_deg * kDegree_rad;
+    options.race.by_safe = options.speed == "safe";
+    if (!options.race.by_safe) options.race.speed_mps = std::stod(options.speed);
     options.race.latency_s = options.latency_ms / 1000.0;
     options.race.start_error_rad = options.start_deg * kDegree_rad;
     options.race.drift_rad = options.drift_deg * kDegree_rad;
-    const std::optional<Mission> mission = mission_of(options.mission);
+    std::optional<Mission> mission;
+    if (!options.mission.empty()) mission = mission_named(options.mission);
     options.race.with_stop = mission.has_value();
     const bool is_trackdrive = mission == Mission::trackdrive;
     options.race.laps = options.laps.value_or(is_trackdrive ? kTrackdriveLaps : 1);
@@ -332,61 +329,50 @@ void add_race_command(CLI::App& program) {
         "names of `conelane methods`; exec:NAME=COMMAND; truth: the true centre line; none: no path");
     command.add_flag("--planner", options->planner, "each detector drives through a planner");
     command.add_flag("--both", options->both, "each detector drives alone and through a planner");
-    command
-        .add_option("--mission", options->mission,
+    add_word_option(command, "--mission", options->mission,
+                    {"acceleration", "skidpad", "autocross", "trackdrive"},
                     "from a standstill to a stop: acceleration, skidpad, autocross or trackdrive; without it "
-                    "the car rolls and the last lap ends the race")
-        ->check(CLI::IsMember({"acceleration", "skidpad", "autocross", "trackdrive"}));
+                    "the car rolls and the last lap ends the race");
     command.add_flag("--vary", options->vary,
                      "acceleration and skidpad: each seed draws another course within the rules");
-    command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
+    command.add_option("--condition", options->condition, "paper, car, harsh or slam")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
     command.add_option("--range", options->race.sight.range_m, "radius of the visible half disc [m]")
         ->capture_default_str();
     command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
         ->check(CLI::Range(1, 1000));
-    command.add_option("--speed", options->race.speed_mps, "speed of the car [m/s]")
-        ->check(number_in(0.5, 40.0))
+    add_number_option(command, "--fov", options->fov_deg, 20.0, 180.0,
+                      "angle of view, in the middle ahead [degrees]");
+    command
+        .add_option("--speed", options->speed,
+                    "speed of the car [m/s]; safe: as fast as the path and its trusted length allow")
+        ->check((CLI::Range(0.5, 40.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case)) |
+                CLI::IsMember({"safe"}))
         ->capture_default_str();
     command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
-    command.add_option("--latency-ms", options->latency_ms, "simulated time from a frame to its path")
-        ->check(number_in(0.0, 1000.0))
-        ->capture_default_str();
+    add_number_option(command, "--latency-ms", options->latency_ms, 0.0, 1000.0,
+                      "simulated time from a frame to its path");
     command.add_flag("--colors", options->race.sight.with_color, "cones have their colour");
-    command.add_option("--ids", options->ids, "tracked: points keep their id; none: no point has one")
-        ->check(CLI::IsMember({"tracked", "none"}))
-        ->capture_default_str();
-    command
-        .add_option("--fault", options->fault,
+    add_word_option(command, "--ids", options->ids, {"tracked", "none"},
+                    "tracked: points keep their id; none: no point has one");
+    add_word_option(command, "--fault", options->fault,
+                    {"none", "jump", "late", "twice", "order", "blackout", "ids"},
                     "jump: the map moves by 0.5 m; late, twice, order: frames come late, twice or out of "
-                    "order; blackout: 1 s without cones; ids: all cones change their id")
-        ->check(CLI::IsMember({"none", "jump", "late", "twice", "order", "blackout", "ids"}))
-        ->capture_default_str();
-    command
-        .add_option("--start-error", options->race.start_error_m,
-                    "largest distance of the car from the start [m]")
-        ->check(number_in(0.0, 3.0))
-        ->capture_default_str();
-    command
-        .add_option("--start-error-deg", options->start_deg,
-                    "largest angle between the car and the start's direction [degrees]")
-        ->check(number_in(0.0, 45.0))
-        ->capture_default_str();
-    command.add_option("--drift", options->race.drift_m, "how far the map moves in a lap [m]")
-        ->check(number_in(0.0, 10.0))
-        ->capture_default_str();
-    command.add_option("--drift-deg", options->drift_deg, "how far the map turns in a lap [degrees]")
-        ->check(number_in(0.0, 45.0))
-        ->capture_default_str();
-    command
-        .add_option("--replay", options->replay,
-                    "races in replay.jsonl: unfinished (and the first one), all or none")
-        ->check(CLI::IsMember({"unfinished", "all", "none"}))
-        ->capture_default_str();
+                    "order; blackout: 1 s without cones; ids: all cones change their id");
+    add_number_option(command, "--start-error", options->race.start_error_m, 0.0, 3.0,
+                      "largest distance of the car from the start [m]");
+    add_number_option(command, "--start-error-deg", options->start_deg, 0.0, 45.0,
+                      "largest angle between the car and the start's direction [degrees]");
+    add_number_option(command, "--drift", options->race.drift_m, 0.0, 10.0,
+                      "how far the map moves in a lap [m]");
+    add_number_option(command, "--drift-deg", options->drift_deg, 0.0, 45.0,
+                      "how far the map turns in a lap [degrees]");
+    add_word_option(command, "--replay", options->replay, {"unfinished", "all", "none"},
+                    "races in replay.jsonl: unfinished (and the first one), all or none");
     add_threads_option(command, options->threads, "number of threads; the results do not depend on it");
     command.add_option("--out", options->out, "folder for race.json, table.txt, replay.jsonl and times.txt")
         ->required();
     command.callback([options] { run_races(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

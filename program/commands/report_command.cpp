@@ -4,7 +4,6 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/report/package.hpp"
 #include "experiments/report/picture.hpp"
 #include "experiments/report/report.hpp"
@@ -13,26 +12,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 // What the Python package of the program draws: pages and pictures.
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
-
-template <typename Call>
-void call_package(const Call& call) {
-    try {
-        call();
-    } catch (const PackageRefused&) {
-        throw CLI::RuntimeError(2);  // it has printed the reason
-    }
-}
 
 struct ReportOptions {
     std::string results;
@@ -156,4 +141,4 @@ void add_plot_command(CLI::App& program) {
     command.callback([options] { plot(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -1,19 +1,10 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "program/commands/commands.hpp"
 
-#include <memory>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct ScenesOptions {
@@ -58,4 +49,4 @@ void add_scenes_command(CLI::App& program) {
     command.callback([options] { make_scenes(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

@@ -8,23 +8,18 @@
 #include "experiments/comparison/results.hpp"
 #include "experiments/comparison/summary.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <span>
-#include <string>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct ScoreOptions {
@@ -112,11 +107,11 @@ void score_all(const ScoreOptions& options) {
         nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
         if (!options.detectors.empty()) run["lanes_of_methods"] = options.detectors;
         AtomicFile output(options.json);
-        write_results(output.stream(), scored, {}, run.dump());
+        write_results(output.stream(), scored, run.dump());
         output.commit();
     }
     if (options.wide) {
-        fmt::print("{}{}", wide_table(scored, {}), table_note_on(left_out));
+        fmt::print("{}{}", wide_table(scored), table_note_on(left_out));
     } else {
         fmt::print("{}all measures: conelane score --wide\n", summary(scored, left_out));
     }
@@ -140,4 +135,4 @@ void add_score_command(CLI::App& program) {
     command.callback([options] { score_all(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

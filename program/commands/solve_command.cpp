@@ -5,25 +5,20 @@
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/input_error.hpp"
 #include "evaluation/outside/outside_solver.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
 #include <map>
-#include <memory>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct Options {
@@ -53,14 +48,19 @@ ChosenSolver choose(const Options& options) {
         return {std::make_unique<OutsideSolver>(*outside, how), outside->name,
                 std::string(to_string(how.formulation))};
     }
-    if (options.all_rows)
-        throw InvalidInput("--all-rows", "is for programs from outside: --solver exec:NAME=COMMAND");
     const RldSolverEntry* entry = find_rld_solver(options.solver);
     if (entry == nullptr) {
         throw InvalidInput("--solver",
                            "there is no solver '" + options.solver + "', see `conelane methods --solvers`");
     }
-    return {entry->make(formulation), options.solver, options.formulation};
+    if (!options.all_rows) return {entry->make(formulation), options.solver, options.formulation};
+    const MilpBackend* const milp = find_milp_backend(options.solver);
+    if (milp == nullptr)
+        throw InvalidInput("--all-rows", "'" + options.solver + "' solves no program, so there are no rows");
+    return {make_milp_rld_solver(
+                [milp](const BinaryProgram& program, std::uint64_t) { return milp->load(program); },
+                {formulation, true}),
+            options.solver, options.formulation};
 }
 
 /// The number of scenes by status, in the order in which the statuses first occur.
@@ -105,8 +105,7 @@ void solve_all(const Options& options) {
     std::size_t started = 0;
     Progress progress(name, scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
-        const Scene scene =
-            options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
+        const Scene scene = cones_asked_for(annotated.scene, options.nearest);
         std::optional<LaneGraph> start;
         if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
         if (const auto lane = lanes.find(scene.id); lane != lanes.end() && !lane->second.closed)
@@ -159,13 +158,10 @@ void add_solve_command(CLI::App& program) {
         ->capture_default_str();
     command.add_flag(
         "--all-rows", options->all_rows,
-        "a program from outside gets one file with all rows (no cycles and the pairing as a flow) and is "
-        "asked once; without it, rows that its point violates are added and it is asked again");
-    command
-        .add_option("--formulation", options->formulation,
-                    "the program, for solvers that use one: tight, or paper as printed")
-        ->check(CLI::IsMember({"tight", "paper"}))
-        ->capture_default_str();
+        "a solver of programs gets one with all rows (no cycles and the pairing as a flow) and is asked "
+        "once; without it, rows that its point violates are added and it is asked again");
+    add_word_option(command, "--formulation", options->formulation, {"tight", "paper"},
+                    "the program, for solvers that use one: tight, or paper as printed");
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     add_output_option(command, "--out", options->out, "*.solutions.jsonl")->required();
     add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
@@ -183,4 +179,4 @@ void add_solve_command(CLI::App& program) {
     command.callback([options] { solve_all(*options); });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

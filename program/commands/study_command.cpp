@@ -1,18 +1,11 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/studies/study.hpp"
 #include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
 
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 struct StudyOptions {
@@ -67,4 +60,4 @@ void add_study_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

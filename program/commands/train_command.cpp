@@ -4,23 +4,18 @@
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/training/front_training.hpp"
-#include "experiments/training/rld_training.hpp"
-#include "experiments/training/training_run.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/weights/weight_files.hpp"
+#include "learning/training/front_training.hpp"
+#include "learning/training/rld_training.hpp"
+#include "learning/training/training_run.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/field_options.hpp"
 
 #include <cstdint>
 #include <cstdio>
-#include <memory>
-#include <string>
 
-#include <fmt/format.h>
-
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 constexpr const char* kHoldOut = "tracks to measure on only, not to learn from";
@@ -213,4 +208,4 @@ void add_train_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

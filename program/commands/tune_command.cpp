@@ -1,37 +1,25 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "evaluation/formats/atomic_file.hpp"
-#include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/scene_set.hpp"
-#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/progress/progress.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/progress/progress.hpp"
-#include "experiments/tuning/detector_tuning.hpp"
-#include "experiments/tuning/evaluation.hpp"
-#include "experiments/tuning/evaluation_log.hpp"
-#include "experiments/tuning/failure_causes.hpp"
-#include "experiments/tuning/tuner.hpp"
-#include "experiments/tuning/weight_fit.hpp"
+#include "learning/tuning/detector_tuning.hpp"
+#include "learning/tuning/evaluation.hpp"
+#include "learning/tuning/tuner.hpp"
+#include "program/commands/command_parts.hpp"
 #include "program/commands/commands.hpp"
-#include "program/commands/field_options.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <memory>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace conelane::experiments {
+namespace conelane::program {
 namespace {
 
 using nlohmann::ordered_json;
@@ -42,135 +30,20 @@ struct TuneOptions {
     SceneOptions scenes;
     EvaluationOptions evaluation;
     TunerOptions tuner;
-    std::size_t rounds = 0;
     std::string start;
     bool shape = false;
     std::string out;
-    std::filesystem::path log;
 };
 
-/// Everything that the figures of parameters depend on; `start` for what tuning does not change.
-ordered_json conditions(const TuneOptions& options, const RldParameters& start) {
+/// What a record has in each tuning.
+ordered_json record_of(const TuneOptions& options) {
     ordered_json json{{"commit", provenance().commit},
-                      {"tracks", options.tracks},
-                      {"objective", to_string(options.evaluation.objective)}};
+                      {"compiler", provenance().compiler},
+                      {"machine", provenance().machine},
+                      {"tracks", options.tracks}};
     json.update(scene_options_json(options.scenes));
-    json.update(ordered_json{{"time_limit_ms", options.evaluation.time_limit_ms},
-                             {"most_nodes", options.evaluation.max_nodes},
-                             {"pairing", to_string(start.pairing)},
-                             {"w_color", start.w_color},
-                             {"shape", has_shape_costs(start)},
-                             {"use_confidence", start.use_confidence},
-                             {"forbid_crossing", start.forbid_crossing}});
-    if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
-    if (options.evaluation.context) json["context"] = *options.evaluation.context;
+    json["evaluations"] = options.tuner.evaluations;
     return json;
-}
-
-ordered_json to_json(const RldParameters& parameters) {
-    ordered_json json = ordered_json::object();
-    for (const auto& fields : {rld_parameter_fields(), rld_extra_fields()}) {
-        for (const RldParameterField& field : fields) json[std::string(field.key)] = parameters.*field.value;
-        if (!has_shape_costs(parameters)) break;
-    }
-    return json;
-}
-
-/// The mean over all scenes, and by rate and by track.
-ordered_json to_json(const std::vector<LapFigure>& laps) {
-    ordered_json json{{"mean", mean_over_scenes(laps)}};
-    const auto add_means = [&](const char* key, const auto& key_of) {
-        ordered_json means = ordered_json::object();
-        for (const LapFigure& lap : laps) {
-            if (means.contains(key_of(lap))) continue;
-            std::vector<LapFigure> same;
-            for (const LapFigure& other : laps) {
-                if (key_of(other) == key_of(lap)) same.push_back(other);
-            }
-            means[key_of(lap)] = mean_over_scenes(same);
-        }
-        json[key] = means;
-    };
-    add_means("by_rate", [](const LapFigure& lap) { return fmt::format("{}", lap.rate); });
-    add_means("by_track", [](const LapFigure& lap) { return lap.track; });
-    return json;
-}
-
-/// For each rate: number of scenes by cause of inaccuracy, and where inaccurate scenes have wrong cones.
-struct FailureCounts {
-    ordered_json causes = ordered_json::object();
-    ordered_json places = ordered_json::object();
-};
-
-void count_one(ordered_json& counts, std::string_view name) {
-    ordered_json& count = counts[std::string(name)];
-    count = count.is_null() ? 1 : count.get<std::size_t>() + 1;
-}
-
-FailureCounts count_failures(const std::vector<AnnotatedScene>& scenes, const RldParameters& parameters,
-                             const EvaluationOptions& options) {
-    FailureCounts counts;
-    for (const AnnotatedScene& scene : scenes) {
-        const std::string rate = fmt::format("{}", scene.false_positive_rate.value_or(0.0));
-        const Diagnosis found = diagnose(scene, parameters, options);
-        count_one(counts.causes[rate], to_string(found.cause));
-        if (!found.wrong) continue;
-        ordered_json& places = counts.places[rate];
-        for (const auto& [name, cones] :
-             {std::pair("near_end", found.wrong->near_end), std::pair("inside", found.wrong->inside),
-              std::pair("far_end", found.wrong->far_end),
-              std::pair("lost_boundary", found.wrong->on_lost_boundary)}) {
-            if (cones > 0) count_one(places, name);
-        }
-        if (*found.wrong == WrongCones{}) count_one(places, "none");
-    }
-    return counts;
-}
-
-/// Two lines for each rate: shares of the scenes that count.
-void print_failures(const FailureCounts& failures) {
-    const std::string not_counted(to_string(FailureCause::no_ground_truth));
-    for (const auto& [rate, causes] : failures.causes.items()) {
-        double scenes = 0.0;
-        for (const auto& [cause, count] : causes.items()) {
-            if (cause != not_counted) scenes += count.get<double>();
-        }
-        const auto shares = [&](const ordered_json& counts) {
-            std::vector<std::string> parts;
-            for (const auto& [name, count] : counts.items()) {
-                if (name != not_counted)
-                    parts.push_back(fmt::format("{} {:.1f} %", name, 100.0 * count.get<double>() / scenes));
-            }
-            return fmt::format("{}", fmt::join(parts, ", "));
-        };
-        fmt::print("false positives {}: {}\n", rate, shares(causes));
-        if (failures.places.contains(rate))
-            fmt::print("    wrong cones at: {}\n", shares(failures.places[rate]));
-    }
-}
-
-ordered_json record_of(const TuneOptions& options, const RldParameters& start, const Tuned& tuned) {
-    ordered_json record = conditions(options, start);
-    record["folds"] = options.tuner.folds;
-    record["rounds"] = options.rounds;
-    record["evaluations"] = options.tuner.evaluations;
-    record["compiler"] = provenance().compiler;
-    record["machine"] = provenance().machine;
-    ordered_json folds = ordered_json::array();
-    std::vector<LapFigure> held_out;
-    for (const Fold& fold : tuned.folds) {
-        held_out.insert(held_out.end(), fold.held_out_laps.begin(), fold.held_out_laps.end());
-        folds.push_back({{"held_out", fold.held_out},
-                         {"training", fold.training},
-                         {"held_out_figures", to_json(fold.held_out_laps)},
-                         {"held_out_figures_of_start", to_json(fold.held_out_laps_of_start)},
-                         {"parameters", to_json(fold.parameters)}});
-    }
-    if (!tuned.folds.empty()) record["held_out_figures"] = to_json(held_out);
-    record["figures_of_start"] = to_json(tuned.laps_of_start);
-    record["figures"] = to_json(tuned.laps);
-    record["fold_results"] = folds;
-    return record;
 }
 
 std::filesystem::path record_path(std::filesystem::path parameters) {
@@ -194,13 +67,8 @@ void tune_method(TuneOptions& options) {
         Progress progress("tune " + options.detector, tuning.evaluations);
         tuned = tune_detector(recipe, set, tuning, [&] { progress.advance(); });
     }
-    ordered_json record{{"method", options.detector},
-                        {"commit", provenance().commit},
-                        {"compiler", provenance().compiler},
-                        {"machine", provenance().machine},
-                        {"tracks", options.tracks}};
-    record.update(scene_options_json(options.scenes));
-    record["evaluations"] = tuning.evaluations;
+    ordered_json record{{"method", options.detector}};
+    record.update(record_of(options));
     record["figure_of_start"] = describe(tuned.figure_of_start);
     record["figure"] = describe(tuned.figure);
     AtomicFile record_file(record_path(options.out));
@@ -226,29 +94,30 @@ void tune_rld(TuneOptions& options) {
         throw InvalidInput("--start", "has learned costs, which `conelane train rld` learns");
     if (options.shape) start = with_shape_costs(start);
     const Evaluation evaluation(make_scene_set(options.tracks, options.scenes), options.evaluation);
-    EvaluationLog log(options.log, to_line(conditions(options, start)),
-                      [&](const RldParameters& parameters) { return evaluation(parameters); });
-    const std::size_t fits = options.tuner.folds > 1 ? options.tuner.folds + 1 : 1;
     Tuned tuned;
     {
-        // The figures of the start, and for each fit those of start and winner on the held-out tracks.
-        Progress progress(
-            "tune", 1 + fits * (solves_in(options.rounds) + options.rounds + options.tuner.evaluations + 2));
+        Progress progress("tune", 1 + options.tuner.evaluations);
         const auto evaluate = [&](const RldParameters& parameters) {
-            std::vector<LapFigure> laps = log(parameters);
+            const double figure = evaluation(parameters);
             progress.advance();
-            return laps;
+            return figure;
         };
-        const WeightRoundsOptions rounds{options.rounds, options.scenes.seed, [&] { progress.advance(); }};
-        const auto propose = [&](const RldParameters& from, const std::set<std::string>& tracks) {
-            return fit_weights_in_rounds(evaluation, from, tracks, rounds);
-        };
-        tuned = tune(evaluate, start, options.tuner, propose);
+        tuned = tune(evaluate, start, options.tuner);
     }
-    ordered_json record = record_of(options, start, tuned);
-    const FailureCounts failures = count_failures(evaluation.scenes(), tuned.parameters, options.evaluation);
-    record["losses"] = failures.causes;  // the key in all records so far
-    record["wrong_cones"] = failures.places;
+    ordered_json record{{"objective", to_string(options.evaluation.objective)}};
+    record.update(record_of(options));
+    record.update(ordered_json{{"time_limit_ms", options.evaluation.time_limit_ms},
+                               {"most_nodes", options.evaluation.max_nodes},
+                               {"pairing", to_string(start.pairing)},
+                               {"w_color", start.w_color},
+                               {"shape", has_shape_costs(start)},
+                               {"use_confidence", start.use_confidence},
+                               {"forbid_crossing", start.forbid_crossing},
+                               {"scenes", evaluation.scenes().size()},
+                               {"figure_of_start", tuned.figure_of_start},
+                               {"figure", tuned.figure}});
+    if (options.evaluation.nearest) record["nearest"] = *options.evaluation.nearest;
+    if (options.evaluation.context) record["context"] = *options.evaluation.context;
     AtomicFile file(record_path(options.out));
     file.stream() << record.dump(2) << '\n';
     file.finish();
@@ -258,16 +127,8 @@ void tune_rld(TuneOptions& options) {
         write_rld_parameters(options.out, tuned.parameters);
         file.commit();
     }
-
     fmt::print("{} on {} scenes: {:.2f} % before, {:.2f} % after\n", to_string(options.evaluation.objective),
-               evaluation.scenes().size(), 100.0 * mean_over_scenes(tuned.laps_of_start),
-               100.0 * mean_over_scenes(tuned.laps));
-    for (const Fold& fold : tuned.folds) {
-        fmt::print("held out {}: {:.2f} % before, {:.2f} % after\n", fmt::join(fold.held_out, " "),
-                   100.0 * mean_over_scenes(fold.held_out_laps_of_start),
-                   100.0 * mean_over_scenes(fold.held_out_laps));
-    }
-    print_failures(failures);
+               evaluation.scenes().size(), 100.0 * tuned.figure_of_start, 100.0 * tuned.figure);
 }
 
 }  // namespace
@@ -281,7 +142,7 @@ void add_tune_command(CLI::App& program) {
     options->scenes.every_m = 6.6;
     command.add_option("--method", options->detector,
                        fmt::format("{}, tuned for usable lanes; RLD without it, to which the options "
-                                   "from --objective to --most-nodes and from --folds to --log belong",
+                                   "from --objective to --most-nodes, --start and --shape belong",
                                    fmt::join(tunable_names(), " or ")));
     add_tracks_option(command, options->tracks)->required();
     const auto objectives = objective_names();
@@ -304,39 +165,18 @@ void add_tune_command(CLI::App& program) {
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     add_field_options(
-        command, {{"--most-nodes",
-                   "",
-                   &options->evaluation.max_nodes,
-                   {1.0, 1e9},
+        command, {{"--most-nodes", "", &options->evaluation.max_nodes, OptionRange{1.0, 1e9},
                    "largest number of nodes of a scene's search; a search that takes more counts as wrong"},
-                  {"--folds",
-                   "",
-                   &options->tuner.folds,
-                   {1.0, 1000.0},
-                   "number of groups of tracks; each group is held out once; 1 holds none out"},
-                  {"--rounds",
-                   "",
-                   &options->rounds,
-                   {0.0, 1000.0},
-                   "rounds that fit the weights to the lane graphs found so far, before the search of each "
-                   "fit; not in "
-                   "the log"},
-                  {"--evaluations",
-                   "",
-                   &options->tuner.evaluations,
-                   {0.0, 1e6},
-                   "largest number of parameter sets that the search evaluates in each fit"}});
+                  {"--evaluations", "", &options->tuner.evaluations, OptionRange{0.0, 1e6},
+                   "largest number of parameter sets that the search evaluates"}});
     command.add_option(
         "--start", options->start,
         "parameters to start from: a name or a file, as for --params elsewhere; without it the defaults");
     command.add_flag("--shape", options->shape, "start with the costs of a lane's shape and tune them too");
     add_threads_option(command, options->evaluation.threads, "scenes solved at a time");
     add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();
-    command.add_option(
-        "--log", options->log,
-        "*.jsonl, a line for each evaluation; with the same log, a tuning that was stopped resumes");
-    for (const char* const of_rld : {"--objective", "--nearest", "--context", "--time-limit", "--most-nodes",
-                                     "--folds", "--rounds", "--start", "--shape", "--log"})
+    for (const char* const of_rld :
+         {"--objective", "--nearest", "--context", "--time-limit", "--most-nodes", "--start", "--shape"})
         command.get_option(of_rld)->excludes("--method");
     command.callback([options, &command] {
         if (options->detector.empty()) return tune_rld(*options);
@@ -347,4 +187,4 @@ void add_tune_command(CLI::App& program) {
     });
 }
 
-}  // namespace conelane::experiments
+}  // namespace conelane::program

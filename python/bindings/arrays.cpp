@@ -1,15 +1,13 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "evaluation/formats/cone_json.hpp"
+#include "model/position_covariance.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <tuple>
-#include <type_traits>
 #include <unordered_map>
 
 namespace conelane::python {

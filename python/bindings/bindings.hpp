@@ -21,6 +21,7 @@
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 /// The module conelane._core. Each function adds its part. A docstring begins with the Python signature, from
 /// which the arguments are read, because pybind11's own one would have C++ types. That of an attribute begins
@@ -168,6 +169,7 @@ void add_scenes(py::module_& module);
 void add_lanes(py::module_& module);
 void add_detector(py::module_& module);
 void add_rld(py::module_& module);
+void add_files(py::module_& module);  ///< not in a build of the core alone
 
 }  // namespace conelane::python
 

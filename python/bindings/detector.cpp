@@ -1,21 +1,17 @@
-#include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
+#include "conelane/speed_profile.hpp"
 #include "detectors/recipe.hpp"
 #include "python/bindings/bindings.hpp"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <string>
 #include <utility>
 #include <variant>
-
-#include <fmt/format.h>
-#include <pybind11/stl.h>
 
 namespace conelane::python {
 namespace {
@@ -270,6 +266,48 @@ std::optional<py::array_t<double>> course(PlannerObject& planner) {
     return array(*course);
 }
 
+constexpr const char* kSpeedProfile =
+    R"(speed_profile(centre_line: ArrayLike, v_now: float = 0.0, stop_at_m: Optional[float] = None, *,
+       a_lateral: float = 9.0, a_brake: float = 6.0, a_drive: float = 6.0, v_max: float = 20.0) -> NDArray[float64]
+
+The fastest speeds along an open path: a limit by curvature, a pass forward for driving and a pass backward for
+braking; across and along, the tyres share their grip (the friction ellipse).
+
+centre_line: (N, 7), columns as of `Lane.centre_line`, for example of a plan.
+v_now: Speed at the first point [m/s]. If the first speed of the result is lower, the car has to brake at once.
+stop_at_m: Where the car has to be at rest [m], for example `Plan.safe_m`; None for nowhere.
+a_lateral, a_brake, a_drive, v_max: Limits across the car, along it by the tyres and by the motor [m/s^2]; of the speed.
+Returns (N, 4): s [m], speed [m/s], acceleration up to the next row [m/s^2], time [s]; the time behind a stop is inf.
+Raises ValueError for wrong shapes, and for a limit that is not positive and finite.
+
+>>> import conelane, numpy
+>>> line = numpy.zeros((21, 7))
+>>> line[:, 0] = numpy.arange(21)
+>>> profile = conelane.speed_profile(line, v_now=6.0, stop_at_m=20.0)
+>>> float(profile[0, 1]), float(profile[20, 1])
+(6.0, 0.0)
+)";
+
+py::array_t<double> speeds(const py::object& centre_line, double v_now, std::optional<double> stop_at_m,
+                           double a_lateral, double a_brake, double a_drive, double v_max) {
+    const Numbers rows = numbers(centre_line, "centre_line");
+    if (rows.ndim() != 2 || rows.shape(1) != 7) throw InvalidInput("centre_line", "must have 7 columns");
+    DrivableLane path;
+    for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+        path.points.push_back({.s_m = rows.at(i, 0), .curvature_1pm = rows.at(i, 4)});
+        if (i > 0 && !(rows.at(i, 0) > rows.at(i - 1, 0)))
+            throw InvalidInput("centre_line", "its first column must increase");
+    }
+    const std::vector<SpeedPoint> profile =
+        speed_profile(path, {a_lateral, a_brake, a_drive, v_max}, {v_now, limit_of(stop_at_m)});
+    py::array_t<double> result({rows.shape(0), py::ssize_t{4}});
+    for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+        const auto& [s_m, v_mps, a_mps2, t_s] = profile[static_cast<std::size_t>(i)];
+        std::ranges::copy(std::array{s_m, v_mps, a_mps2, t_s}, result.mutable_data(i));
+    }
+    return result;
+}
+
 constexpr const char* kPlanner =
     R"(Planner(mission: str = "trackdrive", detector: str = "front-warm", laps: Optional[int] = None, *,
         max_age_s: float = 1.0, step_m: float = 0.5, smoothing_m: float = 1.75, max_gap_m: float = 5.5,
@@ -336,7 +374,8 @@ void add_plan(py::module_& module) {
     Class<PlanObject>(module, "Plan", "The path to drive. Every attribute is a copy.")
         .get(
             "state",
-            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame; "bridging": no lane in this
+            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame, or the known
+course, which this frame confirms; "bridging": no lane in this
 frame, so the rest of an earlier one; "lost": no earlier lane is left, so there is no path: brake; "finished": the
 last line is crossed, and the lane is the stretch on which to come to rest.)",
             &PlanObject::state, kName)
@@ -351,13 +390,22 @@ car is at rest at the end.)",
         .get("lap", "int: number of start lines crossed since the start; in skidpad, of completed circles",
              &Plan::lap)
         .get("stop", "bool: come to rest within the rest of `centre_line`", &Plan::stop)
+        .get(
+            "stop_line_m",
+            R"(Optional[float]: distance along `centre_line` to the line behind which the car has to stop [m]; None while that
+line is not on the lane, not known, or crossed)",
+            &Plan::stop_line_m)
+        .get(
+            "reason",
+            R"(str: why the course of the lap before is not trusted as far as it is known, or why the path is lost; else empty)",
+            &Plan::reason)
         .get("phase",
              R"(str: of skidpad "approach", "right 1", "right 2", "left 1", "left 2" or "exit"; else empty)",
              &Plan::phase)
         .get("answer", "Answer: of the detector in this frame", &Plan::answer)
         .get("latency_ms", "float: wall clock of the update [ms]", &PlanObject::latency_ms)
         .repr([](const PlanObject& p) {
-            return fmt::format("<conelane.Plan {}: {:.1f} m>", to_string(p.state), p.lane.length_m);
+            return py::str("<conelane.Plan {}: {:.1f} m>").format(to_string(p.state), p.lane.length_m);
         });
 }
 
@@ -368,12 +416,8 @@ void add_planner(py::module_& module) {
                  double max_age_s, double step_m, double smoothing_m, double max_gap_m,
                  double default_width_m, const py::kwargs& given) {
             return std::make_unique<PlannerObject>(
-                PlannerOptions{mission_named(mission),
-                               detector,
-                               detector_options(detector, given),
-                               laps,
-                               {step_m, smoothing_m, max_gap_m, default_width_m},
-                               max_age_s});
+                PlannerOptions{mission_named(mission), detector, detector_options(detector, given), laps,
+                               DrivableOptions{step_m, smoothing_m, max_gap_m, default_width_m}, max_age_s});
         })
         .method(kUpdate, update)
         .method(kCourse, course)
@@ -381,7 +425,7 @@ void add_planner(py::module_& module) {
         .get("mission", "str: its name", &PlannerObject::mission, kName)
         .get("detector", "str: its name", &PlannerObject::detector)
         .repr([](const PlannerObject& p) {
-            return fmt::format("<conelane.Planner '{}' by '{}'>", to_string(p.mission()), p.detector());
+            return py::str("<conelane.Planner '{}' by '{}'>").format(to_string(p.mission()), p.detector());
         });
 }
 
@@ -400,6 +444,7 @@ void add_detector(py::module_& module) {
         .get("meaning", "str: one line", &DetectorObject::description)
         .repr([](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
     add_function(module, kMethods, methods);
+    add_function(module, kSpeedProfile, speeds);
     add_planner(module);
 }
 

@@ -1,21 +1,7 @@
-#include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/input_error.hpp"
-#include "evaluation/outside/point_snapping.hpp"
-#include "evaluation/scoring/score.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <filesystem>
-#include <optional>
-#include <span>
-#include <string>
-#include <unordered_map>
 #include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 namespace conelane::python {
 namespace {
@@ -55,32 +41,6 @@ DrivableLane drivable(const LaneObject& lane, const DrivableOptions& options) {
     return conelane::drivable(answer, scene, options);
 }
 
-std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
-                                   const std::vector<SceneObject>& scenes) {
-    std::unordered_map<std::string, SceneObject> scene_of;  // for look-up only
-    for (const SceneObject& scene : scenes) scene_of.emplace(scene->scene.id, scene);
-    std::vector<LaneObject> lanes;
-    for (LaneRecord& record : conelane::read_lanes(file)) {
-        const auto found = scene_of.find(record.scene);
-        if (found == scene_of.end()) {
-            throw InputError(file, record.line, "scene",
-                             "'" + record.scene + "' is not one of the scenes given");
-        }
-        const Scene& scene = found->second->scene;
-        snap_to_cones(record, scene);
-        if (const std::string fault = fault_of(record, scene); !fault.empty())
-            throw InputError(file, record.line, "", fault);
-        lanes.push_back({std::move(record), {found->second, &scene}});
-    }
-    return lanes;
-}
-
-void write_lanes(const std::filesystem::path& file, const std::vector<const LaneObject*>& lanes) {
-    std::vector<LaneRecord> records;
-    for (const LaneObject* lane : lanes) records.push_back(lane->record);
-    conelane::write_lanes(file, records);
-}
-
 /// A number of the detector's proof, if it has one.
 template <typename Value>
 std::optional<double> of_proof(const LaneObject& lane, Value value) {
@@ -105,12 +65,13 @@ py::array_t<double> centre_line(const LaneObject& lane, double step_m, double sm
     }
 }
 
-std::string text_of(const LaneObject& lane) {
+py::str text_of(const LaneObject& lane) {
     const LaneRecord& record = lane.record;
-    return fmt::format("<conelane.Lane {}: {} left, {} right of {} cones>", to_string(record.answer.status),
-                       record.points ? record.points->left.size() : record.answer.lane.left.size(),
-                       record.points ? record.points->right.size() : record.answer.lane.right.size(),
-                       lane.scene->cones.size());
+    return py::str("<conelane.Lane {}: {} left, {} right of {} cones>")
+        .format(to_string(record.answer.status),
+                record.points ? record.points->left.size() : record.answer.lane.left.size(),
+                record.points ? record.points->right.size() : record.answer.lane.right.size(),
+                lane.scene->cones.size());
 }
 
 static_assert(DrivableOptions{}.step_m == 0.5 && DrivableOptions{}.smoothing_m == 1.75 &&
@@ -154,21 +115,6 @@ constexpr const char* kPlot = R"(plot(ax: Optional[Axes] = None) -> Axes
 Draws cones, both boundaries, the centre line and the car. Needs matplotlib.
 
 ax: By default those of the current figure.
-)";
-
-constexpr const char* kReadLanes =
-    R"(read_lanes(file: Union[str, "PathLike[str]"], scenes: Sequence[Scene]) -> List[Lane]
-
-Lanes of a `*.lanes.jsonl` file.
-
-scenes: The scenes of the lanes, found by id.
-Raises ValueError, naming file, line and key.
-)";
-
-constexpr const char* kWriteLanes =
-    R"(write_lanes(file: Union[str, "PathLike[str]"], lanes: Sequence[Lane]) -> None
-
-Writes a `*.lanes.jsonl` file. If that fails, an old file stays unchanged.
 )";
 
 /// What a lane and the answer in a plan say; `steps` lead to the detector's answer.
@@ -258,8 +204,8 @@ has a negative id of the planner's own)",
         .get("right_ids", "NDArray[int64]: (R,), the same for the right boundary", &LaneAnswer::lane,
              &Lane::right, kArray)
         .repr([](const LaneAnswer& a) {
-            return fmt::format("<conelane.Answer {}: {} left, {} right>", to_string(a.status),
-                               a.lane.left.size(), a.lane.right.size());
+            return py::str("<conelane.Answer {}: {} left, {} right>")
+                .format(to_string(a.status), a.lane.left.size(), a.lane.right.size());
         });
 }
 
@@ -287,105 +233,6 @@ was not seen: "left" or "right", and the arc lengths beside the two cones [m])",
         .get("right_inferred", "bool: the same for the right boundary", &DrivableLane::right_inferred);
 }
 
-CentreLine line_of(const LaneObject& lane, const AnnotatedScene& scene) {
-    const LaneRecord& record = lane.record;
-    const Pose& pose = scene.scene.pose;
-    if (record.points) {
-        return centre_line_of(
-            LaneOutline{record.points->left, record.points->right, record.answer.lane.closed}, pose);
-    }
-    if (!record.centre_line.empty()) return centre_line_of(record.centre_line, pose);
-    return centre_line_of(outline_of(record.answer.lane, scene.scene), pose);
-}
-
-SceneScore score_of(const LaneObject& lane, const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
-    const LaneRecord& record = lane.record;
-    if (record.points) {
-        return score_outline(scene, {record.points->left, record.points->right, record.answer.lane.closed},
-                             record.latency_ms, boundaries);
-    }
-    if (!record.centre_line.empty())
-        return score_centre_line(scene, record.centre_line, record.latency_ms, boundaries);
-    return score(scene, record.answer, record.latency_ms, record.nearest, boundaries);
-}
-
-SceneScore score(const AnnotatedScene& scene, const LaneObject& lane, const TrackBoundaries* boundaries) {
-    const py::gil_scoped_release unlocked;
-    conelane::validate(scene.scene);
-    SceneScore score = score_of(lane, scene, boundaries);
-    if (score.usable().value_or(false) && scene.ground_truth) {
-        const auto truth = centre_line_of(outline_of(*scene.ground_truth, scene.scene), scene.scene.pose);
-        score.centre_line_error = centre_line_error(line_of(lane, scene), truth);
-    }
-    return score;
-}
-
-std::optional<bool> accurate(const SceneScore& score) {
-    if (!score.accuracy) return std::nullopt;
-    return score.accuracy->accurate();
-}
-
-std::optional<py::array_t<float>> lateral_error_m(const SceneScore& score) {
-    if (!score.centre_line_error) return std::nullopt;
-    const std::vector<float>& values = score.centre_line_error->lateral_m;
-    return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
-std::optional<double> heading_error_rad(const SceneScore& score) {
-    if (!score.centre_line_error) return std::nullopt;
-    return score.centre_line_error->heading_rad;
-}
-
-constexpr const char* kScore =
-    R"(score(scene: Scene, lane: Lane, boundaries: Optional[Boundaries] = None) -> Score
-
-Compares a lane with the true one. The measures are defined in docs/measures.md.
-
-scene: With a ground truth, or of a run whose boundaries have the driven path.
-lane: Of this scene: cones are compared by their ids.
-boundaries: Of the whole course. Without them divergence is unknown.
-Raises ValueError if the scene has no ground truth with two cones on each side, or if the lane names a cone that the scene
-    does not have.
-
->>> import conelane
->>> track = conelane.load_tracks("generated:circle")[0]
->>> scene = conelane.generate_scenes(track, every_m=20.0)[0]
->>> result = conelane.score(scene, conelane.Detector("front").detect_scene(scene), track.boundaries)
->>> result.usable, result.category
-(True, 'ground_truth')
-)";
-
-void add_score(py::module_& module) {
-    Class<SceneScore>(module, "Score", "What one lane is worth, by the measures of both papers.")
-        .get("usable", "Optional[bool]: whether a car can drive by the lane; None without boundaries",
-             &SceneScore::usable)
-        .get(
-            "category",
-            R"(str: "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short" or "near_ground_truth")",
-            &SceneScore::category, kName)
-        .get("success", "bool: any category but none and diverging_below_20", &SceneScore::success)
-        .get("accurate", "Optional[bool]: passes the four checks of the RLD paper; None if they do not apply",
-             accurate)
-        .get("error", "bool: the method failed", &SceneScore::error)
-        .get("iou", "Optional[float]: intersection over union with the true lane, in [0, 1]",
-             &SceneScore::iou)
-        .get("lane_length_m", "float: of the lane [m]", &SceneScore::lane_length_m)
-        .get("ground_truth_length_m", "float: of the true lane [m]", &SceneScore::ground_truth_length_m)
-        .get("divergence_distance_m",
-             "Optional[float]: distance at which the lane leaves the course [m]; None if it does not",
-             &SceneScore::divergence_distance_m)
-        .get("lateral_error_m",
-             "Optional[NDArray[float32]]: (K,), lateral error of the centre line every 0.5 m [m]; for usable "
-             "lanes",
-             lateral_error_m)
-        .get("heading_error_rad",
-             "Optional[float]: heading error of the centre line 10 m ahead [rad]; for usable lanes",
-             heading_error_rad)
-        .repr([](const SceneScore& s) { return fmt::format("<conelane.Score {}>", to_string(s.category)); });
-
-    add_function(module, kScore, score);
-}
-
 }  // namespace
 
 void add_lanes(py::module_& module) {
@@ -395,9 +242,6 @@ void add_lanes(py::module_& module) {
     add_answer(lane, &LaneObject::record, &LaneRecord::answer);
     add_record(lane);
     add_answer_of_plan(module);
-    add_function(module, kReadLanes, read_lanes);
-    add_function(module, kWriteLanes, write_lanes);
-    add_score(module);
 }
 
 }  // namespace conelane::python

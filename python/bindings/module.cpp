@@ -5,8 +5,6 @@
 
 #include <cstring>
 #include <exception>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include <pybind11/eval.h>
@@ -65,4 +63,7 @@ PYBIND11_MODULE(_core, module) {
     conelane::python::add_lanes(module);
     conelane::python::add_detector(module);
     conelane::python::add_rld(module);
+#ifdef CONELANE_PYTHON_FILES
+    conelane::python::add_files(module);
+#endif
 }

@@ -1,18 +1,10 @@
 #include "conelane/core_solvers.hpp"
 #include "conelane/invalid_input.hpp"
-#include "conelane/rld_parameter_sets.hpp"
 #include "conelane/solve_scene.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <algorithm>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-#include <pybind11/stl.h>
 
 namespace conelane::python {
 namespace {
@@ -145,8 +137,8 @@ before any lane graph) or "error")",
              [](const SolutionObject& s) { return array(indices_of(s.lane.right, s.cones, "right")); })
         .repr([](const SolutionObject& s) {
             const std::string reason =
-                s.stopped_by ? fmt::format(", stopped by {}", to_string(*s.stopped_by)) : "";
-            return fmt::format("<conelane.RldSolution {}{}>", to_string(s.status), reason);
+                s.stopped_by ? ", stopped by " + std::string(to_string(*s.stopped_by)) : "";
+            return py::str("<conelane.RldSolution {}{}>").format(to_string(s.status), reason);
         });
     add_function(module, kSolveRld, solve_rld);
     add_function(module, kRldParameters, parameters_as_dict);

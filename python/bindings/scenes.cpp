@@ -1,19 +1,6 @@
-#include "conelane/invalid_input.hpp"
-#include "evaluation/formats/scene_file.hpp"
-#include "evaluation/formats/track_spec.hpp"
-#include "evaluation/world/scene_generation.hpp"
 #include "python/bindings/bindings.hpp"
 
-#include <algorithm>
-#include <filesystem>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-#include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 namespace conelane::python {
 namespace {
@@ -43,56 +30,6 @@ std::optional<std::pair<Indices, Indices>> ground_truth(const AnnotatedScene& sc
                      array(indices_of(scene.ground_truth->right, scene.scene.cones, "ground_truth.right")));
 }
 
-std::vector<std::shared_ptr<AnnotatedScene>> shared(std::vector<AnnotatedScene>&& scenes) {
-    std::vector<std::shared_ptr<AnnotatedScene>> all;
-    for (AnnotatedScene& scene : scenes) all.push_back(std::make_shared<AnnotatedScene>(std::move(scene)));
-    return all;
-}
-
-void write_scenes(const std::filesystem::path& file, const std::vector<SceneObject>& scenes) {
-    std::vector<AnnotatedScene> all;
-    for (const SceneObject& scene : scenes) all.push_back(*scene);
-    conelane::write_scenes(file, all);
-}
-
-std::vector<std::shared_ptr<AnnotatedScene>> scenes_along(const Track& track, double false_positive_rate,
-                                                          double range_m, double every_m,
-                                                          const std::optional<std::string>& condition,
-                                                          bool with_color, std::uint64_t seed,
-                                                          std::optional<double> noise_by_range) {
-    SceneOptions options;
-    options.false_positive_rates = {false_positive_rate};
-    options.ranges_m = {range_m};
-    options.every_m = every_m;
-    if (condition) options.conditions = {*condition};
-    options.with_color = with_color;
-    options.seed = seed;
-    options.noise_by_range = noise_by_range;
-    const py::gil_scoped_release unlocked;
-    validate(options);
-    return shared(generate_scenes(track, options));
-}
-
-Indices track_indices(const std::vector<std::size_t>& indices) {
-    const std::vector<std::int64_t> values(indices.begin(), indices.end());
-    return array(values);
-}
-
-std::vector<Track> load_tracks_warning(const std::string& spec) {
-    std::vector<Track> tracks;
-    {
-        const py::gil_scoped_release release;
-        tracks = load_tracks(spec);
-    }
-    for (const Track& track : tracks) {
-        for (const std::string& warning : track.warnings) {
-            const std::string text = track.name + ": " + warning;
-            if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
-        }
-    }
-    return tracks;
-}
-
 constexpr const char* kScene =
     R"(Scene(cones: ArrayLike, pose: ArrayLike, ids: Optional[ArrayLike] = None, colors: Optional[ArrayLike] = None,
       confidences: Optional[ArrayLike] = None, *, id: str = '',
@@ -113,89 +50,9 @@ track: Name of its course.
 <conelane.Scene 'start': 4 cones>
 )";
 
-constexpr const char* kReadScenes =
-    R"(read_scenes(file: Union[str, "PathLike[str]"]) -> List[Scene]
+}  // namespace
 
-Scenes of a `*.scenes.jsonl` file. A scene without an id gets its line number.
-Raises ValueError, naming file, line and key.
-)";
-
-constexpr const char* kWriteScenes =
-    R"(write_scenes(file: Union[str, "PathLike[str]"], scenes: Sequence[Scene]) -> None
-
-Writes a `*.scenes.jsonl` file. If that fails, an old file stays unchanged.
-
->>> import conelane, os, tempfile
->>> scene = conelane.Scene([[0, 1.5], [0, -1.5]], pose=(0, 0, 0.1), id="start")
->>> with tempfile.TemporaryDirectory() as folder:
-...     file = os.path.join(folder, "one.scenes.jsonl")
-...     conelane.write_scenes(file, [scene])
-...     conelane.read_scenes(file)
-[<conelane.Scene 'start': 2 cones>]
-)";
-
-constexpr const char* kBoundaries =
-    R"(Boundaries(left: ArrayLike, right: ArrayLike, closed: bool = True)
-
-The whole annotated boundaries of a course in driving order, from which divergence is measured.
-
-left, right: (K, 2), positions [m].
-closed: Whether the course is a circuit.
-)";
-
-constexpr const char* kReadBoundaries =
-    R"(read_boundaries(file: Union[str, "PathLike[str]"]) -> Dict[str, Boundaries]
-
-Boundaries of the courses of a scenes file, from the `*.tracks.json` file beside it.
-Returns by the name of the track.
-Raises ValueError, naming file and key.
-)";
-
-constexpr const char* kWriteBoundaries =
-    R"(write_boundaries(file: Union[str, "PathLike[str]"], boundaries: Dict[str, Boundaries]) -> None
-
-Writes a `*.tracks.json` file. If that fails, an old file stays unchanged.
-)";
-
-constexpr const char* kLoadTracks =
-    R"(load_tracks(spec: str) -> List[Track]
-
-Tracks from files of several formats, or generated ones.
-
-spec: "generated:NAME" (straight, circle, ...), "fsd:DIR" or "fsd:DIR:1,2", "pacsim:FILE", "eufs:FILE", "ftlog:FILE",
-    a run of ft-fsd. A folder instead of the file stands for all its files.
-Raises ValueError, naming the file, or the spec.
-Warns (UserWarning) for each of the `warnings` of a track.
-
->>> import conelane
->>> conelane.load_tracks("generated:straight")
-[<conelane.Track 'straight': 126 cones>]
-)";
-
-constexpr const char* kGenerateScenes =
-    R"(generate_scenes(track: Track, *, false_positive_rate: float = 0.0, range_m: float = 30.0, every_m: float = 1.1,
-                condition: Optional[str] = None, with_color: bool = False, seed: int = 0,
-                noise_by_range: Optional[float] = None) -> List[Scene]
-
-What a car sees along a track, with the true lane.
-
-false_positive_rate: Share of false cones among all points of a scene, in [0, 0.99].
-range_m: Radius of the half disc ahead that is visible [m].
-every_m: Travel from scene to scene [m].
-condition: "paper", "car" or "harsh": noise, missed cones, and false ones that stay where they are.
-with_color: Whether cones show the colours of the track.
-seed: The same seed gives the same scenes.
-noise_by_range: Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise
-    of the condition. Above 0 the scenes have `covariances`.
-
->>> import conelane
->>> track = conelane.load_tracks("generated:circle")[0]
->>> scenes = conelane.generate_scenes(track, false_positive_rate=0.3, every_m=20.0)
->>> scenes[0].track
-'circle'
-)";
-
-void add_scene(py::module_& module) {
+void add_scenes(py::module_& module) {
     Class<AnnotatedScene, std::shared_ptr<AnnotatedScene>>(module, "Scene", kScene)
         .init(make_scene)
         .get("id", "str: of the scene", &AnnotatedScene::scene, &Scene::id)
@@ -223,55 +80,8 @@ void add_scene(py::module_& module) {
              &AnnotatedScene::false_positive_rate)
         .get("range_m", "Optional[float]: how far the car sees [m]", &AnnotatedScene::range_m)
         .repr([](const AnnotatedScene& s) {
-            return fmt::format("<conelane.Scene '{}': {} cones>", s.scene.id, s.scene.cones.size());
+            return py::str("<conelane.Scene '{}': {} cones>").format(s.scene.id, s.scene.cones.size());
         });
-    add_function(module, kReadScenes,
-                 [](const std::filesystem::path& file) { return shared(read_scenes(file)); });
-    add_function(module, kWriteScenes, write_scenes);
-}
-
-void add_boundaries(py::module_& module) {
-    Class<TrackBoundaries>(module, "Boundaries", kBoundaries)
-        .init([](const py::object& left, const py::object& right, bool closed) {
-            return TrackBoundaries{points(left, "left"), points(right, "right"), closed};
-        })
-        .get("left", "NDArray[float64]: (K, 2), positions [m]", &TrackBoundaries::left, kArray)
-        .get("right", "NDArray[float64]: (K, 2), positions [m]", &TrackBoundaries::right, kArray)
-        .get("closed", "bool: a circuit", &TrackBoundaries::closed)
-        .get("driven", "NDArray[float64]: (K, 2), the driven path [m] of a run without boundaries",
-             &TrackBoundaries::driven, kArray);
-    add_function(module, kReadBoundaries, read_track_boundaries);
-    add_function(module, kWriteBoundaries, write_track_boundaries);
-}
-
-void add_track(py::module_& module) {
-    Class<Track>(module, "Track", "A map of cones with annotated boundaries. Every attribute is a copy.")
-        .get("name", "str: such as \"fsd_1\"", &Track::name)
-        .cones(&Track::cones)
-        .get("left", "NDArray[int64]: (K,), the left boundary in driving order, as indices into `cones`",
-             &Track::left, track_indices)
-        .get("right", "NDArray[int64]: (K,), the right boundary", &Track::right, track_indices)
-        .get("closed", "bool: a circuit", &Track::closed)
-        .get("warnings", "List[str]: facts about the recording that a user should know", &Track::warnings)
-        .get("boundaries", "Boundaries: of the course",
-             [](const Track& t) {
-                 TrackBoundaries all = boundaries(t);
-                 if (all.driven.empty()) all.driven = t.driven;
-                 return all;
-             })
-        .repr([](const Track& t) {
-            return fmt::format("<conelane.Track '{}': {} cones>", t.name, t.cones.size());
-        });
-    add_function(module, kLoadTracks, load_tracks_warning);
-    add_function(module, kGenerateScenes, scenes_along);
-}
-
-}  // namespace
-
-void add_scenes(py::module_& module) {
-    add_boundaries(module);
-    add_scene(module);
-    add_track(module);
 }
 
 }  // namespace conelane::python

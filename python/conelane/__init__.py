@@ -12,14 +12,19 @@ input raises a `ValueError`.
 from enum import IntEnum
 
 from . import _core
-from ._core import (Answer, Boundaries, Detector, DrivableLane, Lane, Plan, Planner, RldSolution, Scene, Score, Track, generate_scenes,
-                    load_tracks, methods, read_boundaries, read_lanes, read_scenes, rld_parameters, score, solve_rld, write_boundaries,
-                    write_lanes, write_scenes)
+from ._core import Answer, Detector, DrivableLane, Lane, Plan, Planner, RldSolution, Scene, methods, rld_parameters, solve_rld, speed_profile
 from ._core import version as __version__
 
-__all__ = ["Answer", "Boundaries", "Color", "Detector", "DrivableLane", "Lane", "NO_ID", "Plan", "Planner", "RldSolution", "Scene", "Score",
-           "Track", "generate_scenes", "load_tracks", "methods", "read_boundaries", "read_lanes", "read_scenes", "rld_parameters", "score",
-           "solve_rld", "write_boundaries", "write_lanes", "write_scenes"]
+try:
+    from ._core import (Boundaries, Score, Track, generate_scenes, load_tracks, read_boundaries, read_lanes, read_scenes, score,
+                        write_boundaries, write_lanes, write_scenes)
+except ImportError:  # a build of the core alone
+    pass
+
+_ALL = ["Answer", "Boundaries", "Color", "Detector", "DrivableLane", "Lane", "NO_ID", "Plan", "Planner", "RldSolution", "Scene", "Score",
+        "Track", "generate_scenes", "load_tracks", "methods", "read_boundaries", "read_lanes", "read_scenes", "rld_parameters", "score",
+        "solve_rld", "speed_profile", "write_boundaries", "write_lanes", "write_scenes"]
+__all__ = [name for name in _ALL if name in ("Color", "NO_ID") or hasattr(_core, name)]
 
 NO_ID = -(2**63)  # of a cone that has none, among ids of `Planner.update`
 
@@ -36,3 +41,8 @@ class Color(IntEnum):
 
 for _name in set(__all__) & set(vars(_core)):
     globals()[_name].__module__ = "conelane"
+
+
+def __getattr__(name: str) -> None:
+    of_files = ": this build is the core alone; docs/python.md says how to build files, courses and scores" if name in _ALL else ""
+    raise AttributeError(f"module 'conelane' has no attribute '{name}'{of_files}")

@@ -42,18 +42,9 @@ class MissionTypes(IntEnum):
     manual_driving = 7
 
 
-_COLOR_OF = {
-    ConeTypes.UNKNOWN: Color.unknown,
-    ConeTypes.YELLOW: Color.yellow,
-    ConeTypes.BLUE: Color.blue,
-    ConeTypes.ORANGE_SMALL: Color.orange,
-    ConeTypes.ORANGE_BIG: Color.orange,
-}
-_MISSION_OF = {
-    MissionTypes.acceleration: "acceleration",
-    MissionTypes.skidpad: "skidpad",
-    MissionTypes.autocross: "autocross",
-}  # all others drive laps
+_COLOR_OF = {ConeTypes.UNKNOWN: Color.unknown, ConeTypes.YELLOW: Color.yellow, ConeTypes.BLUE: Color.blue,
+             ConeTypes.ORANGE_SMALL: Color.orange, ConeTypes.ORANGE_BIG: Color.big_orange}
+_EVENTS = (MissionTypes.acceleration, MissionTypes.skidpad, MissionTypes.autocross)  # all others drive laps
 _MISSIONS_OF_A_MAP = (MissionTypes.acceleration, MissionTypes.skidpad)
 _WITHOUT_END = 1_000_000_000  # laps of a mission that is not a dynamic event
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
@@ -241,20 +232,10 @@ class PathPlanner:
     'following'
     """
 
-    def __init__(
-        self,
-        mission: MissionTypes,
-        experimental_performance_improvements: bool = False,
-        *,
-        detector: str = "front-warm",
-        laps: Optional[int] = None,
-        path_length_m: float = 20.0,
-        points: int = 40,
-        time_limit_ms: float = 50.0,
-        max_path_age: int = 5,
-        interval_s: float = 0.1,
-        frame: Optional[str] = None,
-    ) -> None:
+    def __init__(self, mission: MissionTypes, experimental_performance_improvements: bool = False, *,
+                 detector: str = "front-warm", laps: Optional[int] = None, path_length_m: float = 20.0, points: int = 40,
+                 time_limit_ms: float = 50.0, max_path_age: int = 5, interval_s: float = 0.1,
+                 frame: Optional[str] = None) -> None:
         if frame not in (None, "map", "car"):
             raise ValueError(f"frame: is '{frame}', not 'map', 'car' or None")
         if not path_length_m > 0.0 or points < 2 or not interval_s > 0.0:
@@ -263,10 +244,10 @@ class PathPlanner:
             raise ValueError("max_path_age: must not be below 0")
         self._mission = MissionTypes(mission)
         self._given_frame = frame
-        if self.mission not in (*_MISSION_OF, MissionTypes.trackdrive):
+        if self.mission not in (*_EVENTS, MissionTypes.trackdrive):
             laps = _WITHOUT_END if laps is None else laps
         # Half a call more: sums of intervals are not exact.
-        self._planner = Planner(_MISSION_OF.get(self.mission, "trackdrive"), detector, laps,
+        self._planner = Planner(self.mission.name if self.mission in _EVENTS else "trackdrive", detector, laps,
                                 max_age_s=(max_path_age + 0.5) * interval_s if max_path_age else 0.0)
         self._without_memory = Planner("trackdrive", detector)
         self._frame_check = _FrameCheck()
@@ -299,15 +280,10 @@ class PathPlanner:
             raise AttributeError(f"PathPlanner has no relocalization_info in {self.mission.name}: its paths are in the "
                                  "frame of the cones")
 
-    def calculate_path_in_global_frame(
-        self,
-        cones: Sequence[FloatArray],
-        vehicle_position: FloatArray,
-        vehicle_direction: Union[FloatArray, float],
-        return_intermediate_results: bool = False,
-        *,
-        time_s: Optional[float] = None,
-    ) -> Union[FloatArray, Intermediate]:
+    def calculate_path_in_global_frame(self, cones: Sequence[FloatArray], vehicle_position: FloatArray,
+                                       vehicle_direction: Union[FloatArray, float],
+                                       return_intermediate_results: bool = False, *,
+                                       time_s: Optional[float] = None) -> Union[FloatArray, Intermediate]:
         """Path ahead of the car.
 
         cones: Positions [m] by `ConeTypes`.

@@ -14,22 +14,15 @@ array([0, 2])
 """
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple, Union
+from operator import attrgetter
+from typing import Any, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import Color
 
-__all__ = [
-    "Cones",
-    "from_eufs",
-    "from_fs_track",
-    "from_pacsim",
-    "to_eufs",
-    "to_fs_track",
-    "to_pacsim",
-]
+__all__ = ["Cones", "Fields", "from_eufs", "from_fs_track", "from_pacsim", "to_eufs", "to_fs_track", "to_pacsim"]
 
 FloatArray = NDArray[np.float64]
 
@@ -65,12 +58,12 @@ class Cones(NamedTuple):
 
 
 def _field(message: Any, path: str) -> Any:
-    """A field of a field of a message, such as "pose.pose.position"."""
+    """A field of a field of a message, such as "pose.pose.position", or an item of an array, such as "at.0"."""
     value = message
     for name in path.split("."):
         try:
-            value = value[name] if isinstance(value, dict) else getattr(value, name)
-        except (KeyError, AttributeError):
+            value = value[int(name)] if name.isdigit() else value[name] if isinstance(value, dict) else getattr(value, name)
+        except (KeyError, AttributeError, IndexError):
             raise ValueError(f"{path}: the message has no field '{name}'") from None
     return value
 
@@ -79,9 +72,19 @@ def _has(message: Any, name: str) -> bool:
     return name in message if isinstance(message, dict) else hasattr(message, name)
 
 
-def _positions(cones: Iterable[Any], path: str) -> FloatArray:
-    rows = [(float(_field(cone, f"{path}.x")), float(_field(cone, f"{path}.y"))) for cone in cones]
-    return np.array(rows, dtype=np.float64).reshape(-1, 2)
+def _column(cones: Sequence[Any], path: str) -> List[Any]:
+    """A field of each cone; `_field` names the field that is missing."""
+    if not len(cones) or not isinstance(cones[0], dict):
+        try:
+            return list(map(attrgetter(path), cones))
+        except AttributeError:
+            pass
+    return [_field(cone, path) for cone in cones]
+
+
+def _positions(cones: Sequence[Any], path: str) -> FloatArray:
+    columns = [_column(cones, f"{path}.{axis}".lstrip(".")) for axis in "xy"]
+    return np.array(columns, dtype=np.float64).T.reshape(-1, 2)
 
 
 def _codes(colors: Iterable[Color]) -> NDArray[np.uint8]:
@@ -93,14 +96,18 @@ def _point(position: FloatArray) -> Dict[str, float]:
     return {"x": float(position[0]), "y": float(position[1]), "z": 0.0}
 
 
-def _spread(cone: Any, path: str, size: int, where: str) -> FloatArray:
-    """A covariance with this many numbers; zeros where the cone has none."""
+_OF_XY = {4: [0, 1, 2, 3], 9: [0, 1, 3, 4], 36: [0, 1, 6, 7]}  # by the size of a covariance: xx, xy, yx, yy
+
+
+def _spread(cone: Any, path: str, size: Optional[int], where: str) -> FloatArray:
+    """xx, xy, yx, yy of a covariance with this many numbers; zeros where the cone has none."""
     holder, _, name = path.rpartition(".")
-    is_there = _has(_field(cone, holder) if holder else cone, name)
-    given = np.asarray(_field(cone, path), dtype=np.float64) if is_there else np.zeros(size)
-    if given.shape != (size,):
-        raise ValueError(f"{where}{path}: {given.size} numbers, not {size}")
-    return given
+    if not _has(_field(cone, holder) if holder else cone, name):
+        return np.zeros(4)
+    given = np.asarray(_field(cone, path), dtype=np.float64)
+    if given.ndim != 1 or given.size not in ((size,) if size else _OF_XY):
+        raise ValueError(f"{where}{path}: {given.size} numbers, not {size or '4, 9 or 36'}")
+    return given[_OF_XY[given.size]]
 
 
 def _covariances(rows: List[FloatArray]) -> Optional[FloatArray]:
@@ -134,22 +141,116 @@ _PACSIM_COUNT = 7
 _PACSIM_SURE = 1e-9  # how far the probability of a class may be below 1 that counts as a label
 
 
+class Fields(NamedTuple):
+    """Where a message has its cones: how `conelane.bags` and the ROS 2 node read types that conelane does not know.
+
+    lists: By the name of a field with a list of cones, the colour of these cones: a name of `Color`, or None where each
+        cone has its own. A sensor_msgs/PointCloud2 has none; its points are the cones, their fields those of a cone.
+    x, y: The position in a cone [m], such as "point.x".
+    color, colors: Where a cone has its colour, and the name of `Color` for each value; without `colors` it is r, g, b. By
+        default unknown.
+    confidence, id: Where a cone has them, if it has.
+    covariance: Where a cone has the covariance of its position [m^2], row by row: 4 numbers (x, y), 9 (x, y, z) or 36
+        (and three angles).
+
+    >>> fields = Fields({"cones": None}, x="at.x", y="at.y", color="kind", colors={"b": "blue"})
+    >>> fields.read({"cones": [{"at": {"x": 1, "y": 2}, "kind": "b"}]}).colors.tolist()
+    [1]
+    """
+
+    lists: Mapping[str, Optional[str]] = {}
+    x: str = "x"
+    y: str = "y"
+    color: Optional[str] = None
+    colors: Mapping[Any, str] = {}
+    confidence: Optional[str] = None
+    id: Optional[str] = None
+    covariance: Optional[str] = None
+
+    def read(self, message: Any) -> Cones:
+        """The cones of a message, list by list.
+
+        Raises ValueError, naming a field that is missing, a colour that `colors` does not have, or a covariance of
+        another size.
+        """
+        if self.lists:
+            parts = [self._part(f"{name}[", _field(message, name), color) for name, color in self.lists.items()]
+        else:
+            parts = [self._part("point[", _points_of_cloud(message), None)]
+        x, y, codes, confidences, ids, spread = ([value for part in parts for value in part[key]] for key in range(6))
+        return Cones(np.array([x, y], dtype=np.float64).T.reshape(-1, 2), np.array(codes, dtype=np.uint8),
+                     np.array(confidences, dtype=np.float64) if self.confidence else None,
+                     np.array(ids, dtype=np.int64) if self.id else None, _covariances(spread) if spread else None)
+
+    def _part(self, place: str, cones: Sequence[Any], color: Optional[str]) -> Tuple[Sequence[Any], ...]:
+        if len(cones) and _has(cones[0], "action"):  # markers, of which some delete others
+            cones = [cone for cone in cones if _field(cone, "action") not in (2, 3)]
+
+        def column(path: Optional[str]) -> Sequence[Any]:
+            if path is None:
+                return []
+            return cones[path].tolist() if isinstance(cones, np.ndarray) else _column(cones, path)
+
+        codes = [Color[color or "unknown"]] * len(cones)
+        if color is None and self.color is not None and not self.colors:
+            codes = [_color_of_marker(one) for one in column(self.color)]
+        elif color is None and self.color is not None:
+            known = {_as_text(value): Color[name] for value, name in self.colors.items()}
+            values = [_as_text(value) for value in column(self.color)]
+            for i, value in enumerate(values):
+                if value not in known:
+                    raise ValueError(f"{place}{i}].{self.color}: {value} is not one of {', '.join(known)}")
+            codes = [known[value] for value in values]
+        covariances: Sequence[FloatArray] = []
+        try:  # all at once, which is fast
+            given = np.array(column(self.covariance), dtype=np.float64)
+            covariances = given[:, _OF_XY[given.shape[1]]] if len(given) else []
+        except (ValueError, KeyError, IndexError):  # one is missing, or of another size
+            covariances = [_spread(cone, self.covariance, None, f"{place}{i}].") for i, cone in enumerate(cones)]
+        return (column(self.x), column(self.y), _codes(codes), column(self.confidence), column(self.id), covariances)
+
+
+def _as_text(value: Any) -> str:
+    """1, 1.0 and "1" are the same value of a field."""
+    return str(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
+
+
+_CLOUD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+
+
+def _points_of_cloud(message: Any) -> NDArray[Any]:
+    """The points of a sensor_msgs/PointCloud2, with its fields as columns."""
+    order = ">" if _field(message, "is_bigendian") else "<"
+    fields = [(str(_field(one, "name")), int(_field(one, "offset")), int(_field(one, "datatype"))) for one in _field(message, "fields")]
+    names, offsets, kinds = zip(*fields) if fields else ((), (), ())
+    layout = {"names": names, "offsets": offsets, "formats": [order + _CLOUD_TYPES[kind] for kind in kinds],
+              "itemsize": int(_field(message, "point_step"))}
+    data = np.ascontiguousarray(_field(message, "data"), dtype=np.uint8).tobytes()
+    count, row = int(_field(message, "width")), int(_field(message, "row_step"))
+    if not {"x", "y"} <= set(names) or len(data) < row * int(_field(message, "height")):
+        raise ValueError("fields: a point cloud needs x and y, and data of row_step x height bytes")
+    rows = [np.frombuffer(data, np.dtype(layout), count, i * row) for i in range(int(_field(message, "height")))]
+    return np.concatenate(rows) if rows else np.zeros(0, np.dtype(layout))
+
+
+_EUFS = Fields({name: color.name for color, name in _EUFS_LISTS.items()}, "point.x", "point.y", covariance="covariance")
+_FS_TRACK = Fields({"track": None}, "location.x", "location.y", "color",
+                   {code: color.name for color, code in _FS_CODES.items()})
+
+
 def from_eufs(message: Any) -> Cones:
     """Cones of eufs_msgs/ConeArrayWithCovariance, in the order of its lists; small and big orange ones are orange.
 
     message: With the lists blue_cones, yellow_cones, orange_cones, big_orange_cones and unknown_color_cones of cones
         that have a `point` and, if they know it, a `covariance`: xx, xy, yx, yy.
     Returns without confidences and ids.
-    Raises ValueError, naming the field that is missing, or a covariance of other than four numbers.
+    Raises ValueError as `Fields.read`.
 
     >>> cones = from_eufs(to_eufs([[3, 1], [3, -2]], colors=["blue", "orange"]))
     >>> cones.cones.tolist(), cones.colors.tolist()
     ([[3.0, 1.0], [3.0, -2.0]], [1, 3])
     """
-    cones = [(color, f"{name}[{i}].", cone) for color, name in _EUFS_LISTS.items()
-             for i, cone in enumerate(_field(message, name))]
-    return Cones(_positions((cone for _, _, cone in cones), "point"), _codes(color for color, _, _ in cones),
-                 covariances=_covariances([_spread(cone, "covariance", 4, where) for _, where, cone in cones]))
+    return _EUFS.read(message)
 
 
 def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
@@ -178,17 +279,24 @@ def from_fs_track(message: Any) -> Cones:
     """Cones of fs_msgs/Track, in its order, without confidences and ids; small and big orange ones are orange.
 
     message: With a list `track` of cones that have `location` and `color`.
-    Raises ValueError, naming a missing field, or a colour that fs_msgs/Cone does not have.
+    Raises ValueError as `Fields.read`.
 
     >>> from_fs_track({"track": [{"location": {"x": 1, "y": 2, "z": 0}, "color": 2}]}).colors
     array([3], dtype=uint8)
     """
-    track, color_of = list(_field(message, "track")), {code: color for color, code in _FS_CODES.items()}
-    codes = [int(_field(cone, "color")) for cone in track]
-    for i, code in enumerate(codes):
-        if code not in color_of:
-            raise ValueError(f"track[{i}].color: {code} is not one of fs_msgs/Cone, which are 0 to 4")
-    return Cones(_positions(track, "location"), _codes(color_of[code] for code in codes))
+    return _FS_TRACK.read(message)
+
+
+def _color_of_marker(rgba: Any) -> Color:
+    """Blue if blue is the strongest part, yellow if red and green are about equal, orange if there is less green; else unknown."""
+    red, green, blue = (float(_field(rgba, part)) for part in "rgb")
+    if max(red, green, blue) - min(red, green, blue) < 0.25:
+        return Color.unknown
+    if blue >= max(red, green):
+        return Color.blue
+    if red < 0.75 * green or green < 0.2 * red:
+        return Color.unknown
+    return Color.yellow if green >= 0.75 * red else Color.orange
 
 
 def to_fs_track(cones: ArrayLike, colors: Optional[ArrayLike] = None) -> Dict[str, Any]:
@@ -238,7 +346,7 @@ def from_pacsim(message: Any) -> Cones:
             # Of unknown, blue, yellow, small and big orange; unknown where all are 0.
             shares = probabilities / probabilities.sum() if probabilities.any() else np.eye(_PACSIM_COUNT)[0]
             soft.append([shares[[0, 1, 6]].sum(), *shares[2:6]])
-            spread.append(_spread(landmark, "pose.covariance", 36, f"landmark {i}: ")[[0, 1, 6, 7]])
+            spread.append(_spread(landmark, "pose.covariance", 36, f"landmark {i}: "))
     is_sure = all(max(one) >= 1.0 - _PACSIM_SURE for one in soft)
     has_ids = bool(kept) and all(_has(landmark, "id") for landmark in kept)
     return Cones(
@@ -271,3 +379,18 @@ def to_pacsim(cones: ArrayLike, colors: Optional[ArrayLike] = None, confidences:
         "detection_probability": float(sure[i]), **({} if names is None else {"id": int(names[i])}),
     } for i, (position, color) in enumerate(given)]
     return {"detections": detections}
+
+
+_AMZ = Fields({"cone_detections": None}, "position.x", "position.y", "color.data",
+              {"b": "blue", "y": "yellow", "o": "orange", "blue": "blue", "yellow": "yellow", "orange": "orange", "": "unknown", "u": "unknown"})
+# How the cones of a message are read, by its type. A type that is not here takes a `Fields`.
+READERS = {
+    "eufs_msgs/ConeArrayWithCovariance": from_eufs,
+    "fs_msgs/Track": from_fs_track,
+    "pacsim/PerceptionDetections": from_pacsim,
+    "pacsim/Track": from_pacsim,
+    "fsd_common_msgs/ConeDetections": _AMZ.read,
+    "fsd_common_msgs/Map": _AMZ._replace(lists={f"cone_{name}": name for name in ("yellow", "blue", "orange")}).read,
+    "visualization_msgs/MarkerArray": Fields({"markers": None}, "pose.position.x", "pose.position.y", "color").read,
+    "sensor_msgs/PointCloud2": Fields().read,
+}

@@ -139,10 +139,10 @@ class CbcMainSession : public MilpSession {
 /// a copy of the process (detail::in_own_process), one at a time; the time limit includes waiting for another
 /// solve. The clock is checked in every relaxation and at every node, but not within preprocessing and cut
 /// generation: one of these steps may overrun the limit.
-constexpr MilpBackend kCbcMain =
-    milp_backend<CbcMainSession>({.name = "cbc-main",
-                                  .description = "CBC's full machinery, one at a time",
-                                  .traits = SolverTrait::suits_paper | SolverTrait::refuses_huge_costs,
-                                  .library = "CBC " CBC_VERSION ", Clp " CLP_VERSION});
+constexpr MilpBackend kCbcMain = milp_backend<CbcMainSession>(
+    {.name = "cbc-main",
+     .description = "CBC with its defaults: cuts, heuristics, preprocessing, strong branching; one at a time",
+     .traits = SolverTrait::suits_paper | SolverTrait::refuses_huge_costs,
+     .library = "CBC " CBC_VERSION ", Clp " CLP_VERSION});
 
 }  // namespace conelane

@@ -180,7 +180,7 @@ class ClpBranchAndBound : public MilpSession {
 constexpr MilpBackend kClpBb =
     milp_backend<ClpBranchAndBound>({.name = "clp-bb",
                                      .description = "depth-first branch and bound on a warm Clp",
-                                     .traits = SolverTrait::refuses_huge_costs,
+                                     .traits = SolverTrait::refuses_huge_costs | SolverTrait::tuned,
                                      .library = "Clp " CLP_VERSION});
 
 }  // namespace conelane

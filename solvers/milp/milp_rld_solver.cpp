@@ -1,3 +1,4 @@
+#include "model/connecting_flow.hpp"
 #include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/milp_solver.hpp"
@@ -12,10 +13,9 @@ namespace {
 
 class MilpRldSolver : public RldSolver {
   public:
-    MilpRldSolver(MilpSolver solver, Formulation formulation)
-        : solver_(std::move(solver)), formulation_(formulation) {}
+    MilpRldSolver(MilpSolver solver, ProgramForm form) : solver_(std::move(solver)), form_(form) {}
 
-    EdgeExtent extent() const override { return parts(formulation_).extent; }
+    EdgeExtent extent() const override { return parts(form_.formulation).extent; }
 
   private:
     void run(const LaneGraphProblem& problem, const SolveArguments& arguments, RldReport& report) override {
@@ -38,13 +38,16 @@ class MilpRldSolver : public RldSolver {
     /// Nothing if a limit ended it before the program was loaded; the report then names the limit.
     std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, std::uint64_t seed,
                                       const Deadline& deadline, RldReport& report) {
-        if (!model_) model_.emplace(formulation_);
+        if (!model_) model_.emplace(form_.formulation);
         if (const auto stopped_by = model_->update(problem, deadline)) {
             report.status = SolveStatus::stopped;
             report.stopped_by = stopped_by;
             return nullptr;
         }
-        return solver_(model_->program(), seed);
+        if (!form_.all_rows) return solver_(model_->program(), seed);
+        BinaryProgram whole = model_->program();
+        add_connecting_flow(whole, problem);
+        return solver_(whole, seed);
     }
 
     static void take(const LaneGraphProblem& problem, LaneGraph graph, RldReport& report) {
@@ -114,14 +117,14 @@ class MilpRldSolver : public RldSolver {
     }
 
     MilpSolver solver_;
-    Formulation formulation_;
+    ProgramForm form_;
     std::optional<LaneGraphModel> model_;  ///< built once, then updated
 };
 
 }  // namespace
 
-std::unique_ptr<RldSolver> make_milp_rld_solver(MilpSolver solver, Formulation formulation) {
-    return std::make_unique<MilpRldSolver>(std::move(solver), formulation);
+std::unique_ptr<RldSolver> make_milp_rld_solver(MilpSolver solver, ProgramForm form) {
+    return std::make_unique<MilpRldSolver>(std::move(solver), form);
 }
 
 }  // namespace conelane

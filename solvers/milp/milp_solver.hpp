@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace conelane {
@@ -48,9 +49,17 @@ class MilpSession {
 using MilpSolver =
     std::function<std::unique_ptr<MilpSession>(const BinaryProgram& program, std::uint64_t seed)>;
 
-/// Makes an RLD solver of a MILP solver: build the program, solve it, add the rows that the answer violates
-/// ((5) and the pairing), and solve again until the answer is a lane graph.
-[[nodiscard]] std::unique_ptr<RldSolver> make_milp_rld_solver(MilpSolver solver, Formulation formulation);
+/// Which program a MILP solver gets.
+struct ProgramForm {
+    Formulation formulation = Formulation::tight;
+    /// The program has every row from the first (add_connecting_flow) and is solved once. Otherwise the rows
+    /// that the answer violates ((5) and the pairing) are added, and it is solved again until the answer is a
+    /// lane graph.
+    bool all_rows = false;
+};
+
+/// Makes an RLD solver of a MILP solver.
+[[nodiscard]] std::unique_ptr<RldSolver> make_milp_rld_solver(MilpSolver solver, ProgramForm form);
 
 /// A MILP solver of this build.
 struct MilpBackend {
@@ -70,7 +79,7 @@ constexpr MilpBackend milp_backend(RldSolverEntry entry) {
     entry.make = [](Formulation formulation) {
         return make_milp_rld_solver(
             [](const BinaryProgram& program, std::uint64_t) { return load_session<Session>(program); },
-            formulation);
+            {.formulation = formulation});
     };
     return {entry, load_session<Session>};
 }
@@ -80,8 +89,11 @@ extern const MilpBackend kCbc;
 extern const MilpBackend kCbcMain;
 extern const MilpBackend kClpBb;
 extern const MilpBackend kGlpk;
+extern const MilpBackend kHighs;
 
 /// Those of this build, in the order of milp_solvers.
 [[nodiscard]] std::span<const MilpBackend> milp_backends();
+/// The backend of that name, or nullptr if there is none.
+[[nodiscard]] const MilpBackend* find_milp_backend(std::string_view name);
 
 }  // namespace conelane

@@ -2,18 +2,27 @@
 
 #include "solvers/milp/milp_solver.hpp"
 
+#include <algorithm>
+
 namespace conelane {
 
 std::span<const MilpBackend> milp_backends() {
     static const std::vector<MilpBackend> kBackends{
-        kCbc,
-        kCbcMain,
-        kClpBb,
+        kCbc,   kCbcMain, kClpBb,
 #ifdef CONELANE_HAS_GLPK
         kGlpk,
 #endif
+#ifdef CONELANE_HAS_HIGHS
+        kHighs,
+#endif
     };
     return kBackends;
+}
+
+const MilpBackend* find_milp_backend(std::string_view name) {
+    const auto backend =
+        std::ranges::find(milp_backends(), name, [](const MilpBackend& b) { return b.entry.name; });
+    return backend == milp_backends().end() ? nullptr : &*backend;
 }
 
 std::span<const RldSolverEntry> milp_solvers() {

@@ -34,6 +34,17 @@ struct AscentTuning {
     int max_cliques = 600;                       ///< No more cliques have multipliers.
     std::int64_t completion_tries = 60;          ///< So many arcs are tried to complete a walk.
     std::int64_t first_completion_tries = 1000;  ///< So many are tried while there is no incumbent.
+
+    /// Smoothed ascent: row "smoothed ascent in place of the fourth step". It comes at this step of the root,
+    /// when most scenes have ended.
+    int smoothed_step = 4;
+    double first_temperature = 1.0;
+    double cooling = 0.7;  ///< the next temperature is this times the one before
+    double last_temperature = 0.01;
+    int sweeps = 10;                                       ///< at each temperature
+    std::array<double, 2> clique_temperatures{0.6, 0.03};  ///< Between them it adds cliques.
+    int cliques_per_stage = 20;
+    double scale_after = 0.25;  ///< of the steps that follow it
 };
 
 /// The search on the frontiers.
@@ -62,9 +73,6 @@ struct FrontierTuning {
     std::size_t first_beam_width = 2;  ///< at the root: row "a beam before the first frontiers"
     int first_beam_min_arcs = 70;      ///< A smaller graph has no first beam.
     int first_beam_end_arcs = 1000;    ///< A graph of so many arcs has none either: its windows come first.
-    /// A beam runs at these steps of the root, or later: row "a beam of 16, 24 or 32, and earlier ones".
-    std::array<int, 2> beam_steps{20, 60};
-    std::size_t beam_width = 8;
 
     // Targets of the last try: row "targets below the incumbent".
     std::array<double, 3> targets{0.3, 0.6, 1.0};  ///< shares of the gap

@@ -6,6 +6,7 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/detector_names.hpp"
 #include "tests/support/failing_allocations.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -31,9 +32,8 @@ std::vector<std::int64_t> places(std::int64_t count) {
         chosen.push_back(i);
         chosen.push_back(count - 1 - i);
     }
-    for (int i = 0; i < kBetween; ++i) {
+    for (int i = 0; i < kBetween; ++i)
         chosen.push_back(boost::random::uniform_int_distribution<std::int64_t>(0, count - 1)(random));
-    }
     return chosen;
 }
 
@@ -58,18 +58,26 @@ bool runs_out(const std::function<void()>& call, std::int64_t place) {
     return failed;
 }
 
+/// Runs a call that makes `count` allocations once for each of the places, with the one there failing, and
+/// expects that no memory is lost. Returns how many of the calls threw.
+int run_out_everywhere(std::int64_t count, const std::function<bool(std::int64_t place)>& call) {
+    int failures = 0;
+    for (const std::int64_t place : places(count)) {
+        SCOPED_TRACE(testing::Message() << "allocation " << place << " of " << count);
+        const std::int64_t living = allocations.living;
+        failures += call(place) ? 1 : 0;
+        EXPECT_EQ(allocations.living, living) << "memory is lost";
+    }
+    return failures;
+}
+
 /// A lane among false positives, the cones seen from two poses.
 const std::vector<Scene>& lap() {
     static const std::vector<Scene> kLap = [] {
-        SceneOptions options;
-        options.false_positive_rates = {0.3};
-        options.ranges_m = {20.0};
-        options.every_m = 60.0;
-        options.noise_sigma_m = 0.05;
-        std::vector<Scene> scenes;
-        for (AnnotatedScene& made : make_scene_set({"generated:kidney"}, options).scenes) {
-            scenes.push_back(std::move(made.scene));
-        }
+        SceneOptions options{
+            .false_positive_rates = {0.3}, .ranges_m = {20.0}, .every_m = 60.0, .noise_sigma_m = 0.05};
+        std::vector<Scene> scenes =
+            mapped(make_scene_set({"generated:kidney"}, options).scenes, &AnnotatedScene::scene);
         scenes.resize(2);
         return scenes;
     }();
@@ -103,18 +111,13 @@ TEST_P(DetectorMemory, MayRunOutAnywhereInACall) {
         return count_allocations([&] { (void)drive(*detector); });
     }();
     ASSERT_GT(count, 10);
-    int failures = 0;
-    for (const std::int64_t place : places(count)) {
-        SCOPED_TRACE(testing::Message() << "allocation " << place << " of " << count);
-        const std::int64_t living = allocations.living;
-        {
-            const auto detector = make_detector(GetParam());
-            if (runs_out([&] { (void)drive(*detector); }, place)) ++failures;
-            detector->reset();
-            expect_same(drive(*detector), expected);
-        }
-        EXPECT_EQ(allocations.living, living) << "memory is lost";
-    }
+    const int failures = run_out_everywhere(count, [&](std::int64_t place) {
+        const auto detector = make_detector(GetParam());
+        const bool failed = runs_out([&] { (void)drive(*detector); }, place);
+        detector->reset();
+        expect_same(drive(*detector), expected);
+        return failed;
+    });
     EXPECT_GT(failures, 20);
 }
 
@@ -122,21 +125,14 @@ TEST_P(DetectorMemory, MayRunOutWhereADetectorIsMade) {
     (void)make_detector(GetParam());
     const std::int64_t count = count_allocations([] { (void)make_detector(GetParam()); });
     ASSERT_GT(count, 0);
-    for (const std::int64_t place : places(count)) {
-        SCOPED_TRACE(place);
-        const std::int64_t living = allocations.living;
-        EXPECT_TRUE(runs_out([] { (void)make_detector(GetParam()); }, place));
-        EXPECT_EQ(allocations.living, living) << "memory is lost";
-    }
+    run_out_everywhere(count, [](std::int64_t place) {
+        const bool failed = runs_out([] { (void)make_detector(GetParam()); }, place);
+        EXPECT_TRUE(failed);
+        return failed;
+    });
 }
 
-std::vector<std::string> detector_names() {
-    std::vector<std::string> names;
-    for (const DetectorInfo& info : detectors()) names.emplace_back(info.name);
-    return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(Detectors, DetectorMemory, testing::ValuesIn(detector_names()),
+INSTANTIATE_TEST_SUITE_P(Detectors, DetectorMemory, testing::ValuesIn(tests::detector_names()),
                          [](const auto& test) { return case_name(test.param); });
 
 class SolverMemory : public testing::TestWithParam<const RldSolverEntry*> {};
@@ -154,20 +150,15 @@ TEST_P(SolverMemory, MayRunOutAnywhereInASolve) {
         const auto solver = make();
         return count_allocations([&] { (void)solver->solve(problem, {.start = &start}); });
     }();
-    int failures = 0;
-    for (const std::int64_t place : places(count)) {
-        SCOPED_TRACE(testing::Message() << "allocation " << place << " of " << count);
-        const std::int64_t living = allocations.living;
-        {
-            const auto solver = make();
-            if (runs_out([&] { (void)solver->solve(problem, {.start = &start}); }, place)) ++failures;
-            const RldReport report = solver->solve(problem, {});
-            EXPECT_EQ(report.status, expected.status) << report.message;
-            EXPECT_EQ(report.lane_graph, expected.lane_graph);
-            EXPECT_EQ(report.objective, expected.objective);
-        }
-        EXPECT_EQ(allocations.living, living) << "memory is lost";
-    }
+    const int failures = run_out_everywhere(count, [&](std::int64_t place) {
+        const auto solver = make();
+        const bool failed = runs_out([&] { (void)solver->solve(problem, {.start = &start}); }, place);
+        const RldReport report = solver->solve(problem, {});
+        EXPECT_EQ(report.status, expected.status) << report.message;
+        EXPECT_EQ(report.lane_graph, expected.lane_graph);
+        EXPECT_EQ(report.objective, expected.objective);
+        return failed;
+    });
     EXPECT_GT(failures, 10);
 }
 
@@ -175,18 +166,15 @@ TEST_P(SolverMemory, MayRunOutWhereAProblemIsMade) {
     const Scene scene = tests::random_scene(kSeed, 24);
     const auto make = [&] { (void)make_problem(scene, with_shape_costs({})); };
     const std::int64_t count = count_allocations(make);
-    for (const std::int64_t place : places(count)) {
-        SCOPED_TRACE(place);
-        const std::int64_t living = allocations.living;
-        EXPECT_TRUE(runs_out(make, place));
-        EXPECT_EQ(allocations.living, living) << "memory is lost";
-    }
+    run_out_everywhere(count, [&](std::int64_t place) {
+        const bool failed = runs_out(make, place);
+        EXPECT_TRUE(failed);
+        return failed;
+    });
 }
 
 std::vector<const RldSolverEntry*> solvers() {
-    std::vector<const RldSolverEntry*> all;
-    for (const RldSolverEntry& entry : core_solvers()) all.push_back(&entry);
-    return all;
+    return mapped(core_solvers(), [](const RldSolverEntry& entry) { return &entry; });
 }
 
 INSTANTIATE_TEST_SUITE_P(Core, SolverMemory, testing::ValuesIn(solvers()),

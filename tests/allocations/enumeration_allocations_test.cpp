@@ -32,8 +32,7 @@ std::vector<Point> points() {
 class EnumerationAllocations : public ::testing::TestWithParam<bool> {};
 
 TEST_P(EnumerationAllocations, NoneOnceTheMemoryIsThere) {
-    EnumerationRules rules;
-    rules.with_features = GetParam();
+    EnumerationRules rules{.with_features = GetParam()};
     SearchGraph graph;
     graph.build(points(), rules.d_max_m);
     PathPairEnumeration enumeration;

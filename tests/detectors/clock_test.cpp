@@ -1,5 +1,4 @@
-// Clocks of detectors and solvers: they read a clock that nobody sets, and often enough to keep a
-// limit.
+// Clocks of detectors and solvers: they read a clock that nobody sets, often enough to keep a limit.
 
 #include "conelane/core_solvers.hpp"
 #include "conelane/detectors.hpp"
@@ -76,16 +75,10 @@ TEST(Clocks, NoSolverIsMisledByTheTimeOfDay) {
 
 /// Up to about 480 cones within 80 m, half of them false positives.
 std::vector<Scene> crowded_scenes() {
-    SceneOptions options;
-    options.false_positive_rates = {0.5};
-    options.ranges_m = {80.0};
-    options.every_m = 120.0;
-    options.noise_sigma_m = 0.1;
-    std::vector<Scene> scenes;
-    for (AnnotatedScene& made : make_scene_set({"generated:serpentine", "generated:gates"}, options).scenes) {
-        scenes.push_back(std::move(made.scene));
-    }
-    return scenes;
+    SceneOptions options{
+        .false_positive_rates = {0.5}, .ranges_m = {80.0}, .every_m = 120.0, .noise_sigma_m = 0.1};
+    return mapped(make_scene_set({"generated:serpentine", "generated:gates"}, options).scenes,
+                  &AnnotatedScene::scene);
 }
 
 /// The longest processor time between two readings of the clock, from a new detector's first call to its
@@ -132,8 +125,7 @@ TEST(Clocks, MakingAProblemChecksTheClockAmongTurns) {
         const double angle_rad = 2.0 * std::numbers::pi * k / 800.0;
         scene.cones.push_back({k + 1, {3.2 * std::cos(angle_rad), 3.2 * std::sin(angle_rad)}});
     }
-    RldParameters parameters;
-    parameters.d_t = 1e-3;
+    RldParameters parameters{.d_t = 1e-3};
     forget_looks();
     const LimitedProblem limited =
         make_problem(scene, parameters, EdgeExtent::candidates, Deadline(kLongLimit_ms));

@@ -5,18 +5,18 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/methods/method.hpp"
 #include "tests/support/detector_names.hpp"
+#include "tests/support/metamorphic.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/straight_lane.hpp"
 #include "tests/support/testing.hpp"
 
 #include <thread>
 
 namespace conelane {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -33,16 +33,8 @@ std::vector<std::string> names() {
     return all;
 }
 
-/// `cones` cones on each boundary, about 2 m from the car's axis; those on the right are a little farther
-/// ahead.
 Scene straight(int cones_a_side, const Point& car = {0.0, 0.0}) {
-    Scene scene;
-    scene.pose.position = car;
-    for (int i = 0; i < cones_a_side; ++i) {
-        scene.cones.push_back({2 * i, car + Point(1.0 + 3.2 * i, 1.8)});
-        scene.cones.push_back({2 * i + 1, car + Point(1.2 + 3.2 * i, -1.8)});
-    }
-    return scene;
+    return tests::moved(tests::straight_lane(cones_a_side, 0.2, 3.2), car);
 }
 
 /// Fewer cones for the printed formulation, which takes seconds for twelve.
@@ -346,8 +338,7 @@ TEST_P(DetectorContract, CandidatesAreKeptOnRequestOnly) {
 }
 
 TEST_P(DetectorContract, AnswersForTheNearestConesOnRequest) {
-    DetectorOptions options;
-    options.nearest = 6;
+    DetectorOptions options{.nearest = 6};
     const auto detector = make(options);
     for (const Scene& scene : {straight(6), tests::random_scene(1, 20), tests::random_scene(2, 20)}) {
         const LaneAnswer answer = detect(*detector, scene, tests::kNoTimeLimit);
@@ -377,9 +368,8 @@ TEST_P(DetectorContract, InstancesServeAThreadEach) {
     const std::vector<Scene> scenes = random_scenes();
     const auto all = [&scenes] {
         const auto detector = make();
-        std::vector<LaneAnswer> answers;
-        for (const Scene& scene : scenes) answers.push_back(detector->detect(scene, tests::kNoTimeLimit));
-        return answers;
+        return mapped(scenes,
+                      [&](const Scene& scene) { return detector->detect(scene, tests::kNoTimeLimit); });
     };
     const std::vector<LaneAnswer> alone = all();
     std::vector<std::vector<LaneAnswer>> together(3);
@@ -407,9 +397,8 @@ TEST(Detectors, AreKnownByNamesOfTheirOwnThatAnErrorLists) {
 }
 
 TEST(Detectors, AreAllDetectors) {
-    for (const DetectorInfo& detector : detectors()) {
+    for (const DetectorInfo& detector : detectors())
         EXPECT_NO_THROW((void)experiments::find_method(detector.name)) << detector.name;
-    }
 }
 
 }  // namespace

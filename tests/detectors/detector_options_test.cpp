@@ -4,15 +4,13 @@
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "tests/support/file_test.hpp"
+#include "tests/support/front_fixture.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
-
-using testing::HasSubstr;
-using testing::StartsWith;
 
 std::string refusal(std::string_view detector, const DetectorOptions& options) {
     return conelane::refusal([&] { (void)make_detector(detector, options); });
@@ -49,10 +47,6 @@ TEST(DetectorOptions, ThatADetectorDoesNotUseAreRefused) {
 
 class OwnWeights : public FileTest {
   protected:
-    /// The shipped weights with one text replaced, which they must contain.
-    [[nodiscard]] std::string with(const std::string& from, const std::string& to) const {
-        return with_other(shipped_, from, to);
-    }
     static std::string fault_of(std::string bytes) {
         return refusal("front", {.weights = WeightsBytes{std::move(bytes)}});
     }
@@ -60,18 +54,9 @@ class OwnWeights : public FileTest {
     const std::string shipped_ = text_of(source_directory() / "graph_search" / "weights" / "front.json");
 };
 
-Scene straight() {
-    Scene scene{.id = "straight", .pose = {{0.0, 0.0}, 0.0}, .cones = {}};
-    for (const double x : {2.0, 6.0, 10.0, 14.0, 18.0}) {
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, 1.6}});
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, -1.6}});
-    }
-    return scene;
-}
-
 double confidence(const DetectorOptions& options) {
     const LaneAnswer answer =
-        make_detector("front", options)->detect(straight(), {.time_limit_ms = 60'000.0});
+        make_detector("front", options)->detect(tests::straight_front_scene(5), {.time_limit_ms = 60'000.0});
     EXPECT_EQ(answer.status, LaneStatus::found);
     return answer.confidence.value_or(-1.0);
 }
@@ -91,33 +76,14 @@ TEST_F(OwnWeights, OthersAreUsed) {
     EXPECT_LT(confidence({.weights = WeightsBytes{other}}), 0.5 * confidence({}));
 }
 
+/// refused_weights.txt has the faults of the file's keys.
 TEST_F(OwnWeights, FaultsNameWhatIsWrong) {
     EXPECT_EQ(fault_of(""), "weights: line 1: must be a JSON object, as `conelane train front` writes it");
-    EXPECT_EQ(fault_of(with("\"version\": 3", "\"version\": 4")), "version: must be 1, 2 or 3");
-    EXPECT_EQ(fault_of(with("\"own_segment_known\"", "\"own_segment\"")),
-              "features: 'state' has 'own_segment' at place 0, unlike the library: the weights are of "
-              "another version");
-    EXPECT_EQ(fault_of(with("\"stop_linear\"", "\"stop_lines\"")), "stop_linear: is missing");
-    EXPECT_EQ(fault_of(with("\"least_trust\"", "\"wings\": [{}, null],\n\"least_trust\"")),
-              "wings: is not a key of weights of front");
-    EXPECT_EQ(fault_of(with("\"least_trust\"", "\"version\": 1,\n\"least_trust\"")),
-              "version: is there twice");
-    EXPECT_EQ(fault_of(with("\"extend_output\": [", "\"extend_output\": [1,")),
-              "extend_output: has 49 numbers, not 48");
-    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [NaN,")),
-              "stop_output: number 0 (from 0) is not a number");
-    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [1e39,")),
-              "stop_output: number 0 (from 0) is out of range");
-    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [-1e999,")),
-              "stop_output: number 0 (from 0) is out of range");
-    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [\"1\",")),
-              "stop_output: number 0 (from 0) is not a number");
-    EXPECT_THAT(fault_of(with("\"stop_output\": [", "\"stop_output\": [1.,")),
-                HasSubstr("a number is incomplete"));
-    EXPECT_THAT(fault_of(with("\"stop_output\": [", "\"stop_output\": [01,")), HasSubstr("expected ','"));
-    EXPECT_EQ(fault_of(with("\"least_trust\": ", "\"least_trust\": 1")), "least_trust: must be in [0, 1]");
+    EXPECT_EQ(fault_of(with_other(shipped_, "\"version\": 3", "\"version\": 4")),
+              "version: must be 1, 2 or 3");
+    EXPECT_EQ(fault_of(with_other(shipped_, "\"least_trust\": ", "\"least_trust\": 1")),
+              "least_trust: must be in [0, 1]");
     EXPECT_THAT(fault_of(shipped_ + "{}"), HasSubstr("there is more after the object"));
-    EXPECT_THAT(fault_of(std::string(100'000, '[')), HasSubstr("must be a JSON object"));
     EXPECT_THAT(fault_of("{\"training\": " + std::string(100'000, '[')), HasSubstr("nested too deep"));
     const std::string nowhere = path("nowhere.json").string();
     EXPECT_EQ(refusal("front", {.weights = nowhere}), "weights: " + nowhere + ": cannot be read");

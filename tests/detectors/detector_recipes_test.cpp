@@ -3,30 +3,13 @@
 
 #include "conelane/detectors.hpp"
 #include "experiments/methods/method.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
-
-using testing::AllOf;
-using testing::Contains;
-using testing::IsEmpty;
-using testing::Not;
-
-/// Two rings of 12 cones; the car is between them.
-Scene circuit_seen_whole() {
-    Scene scene;
-    for (int i = 0; i < 12; ++i) {
-        const double angle_rad = 2.0 * std::numbers::pi * (i + 0.3) / 12.0;
-        for (const double radius_m : {6.0, 9.5}) {
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()),
-                                   {radius_m * std::sin(angle_rad), 7.75 - radius_m * std::cos(angle_rad)}});
-        }
-    }
-    return scene;
-}
 
 enum class Painted { not_at_all, as_drawn, the_other_way };
 
@@ -60,7 +43,7 @@ class DetectorRecipes : public testing::TestWithParam<const DetectorRecipe*> {};
 
 TEST_P(DetectorRecipes, SayWhetherLanesAreClosed) {
     const LaneAnswer answer =
-        make_detector(*GetParam())->detect(circuit_seen_whole(), {.time_limit_ms = 2000.0});
+        make_detector(*GetParam())->detect(tests::circuit_seen_whole(), {.time_limit_ms = 2000.0});
     EXPECT_EQ(answer.lane.closed, GetParam()->closed_lanes == ClosedLanes::possible);
 }
 
@@ -84,9 +67,7 @@ TEST_P(DetectorRecipes, SayWhatColorsDo) {
 }
 
 std::vector<const DetectorRecipe*> all() {
-    std::vector<const DetectorRecipe*> all;
-    for (const experiments::Method& known : experiments::known_methods()) all.push_back(known.recipe);
-    return all;
+    return mapped(experiments::known_methods(), &experiments::Method::recipe);
 }
 
 INSTANTIATE_TEST_SUITE_P(Detectors, DetectorRecipes, testing::ValuesIn(all()),
@@ -101,9 +82,10 @@ TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParam
     EXPECT_THAT(training_courses("clc-paper"), Not(Contains("slalom@23")));
     EXPECT_THAT(training_courses("clc"), Not(Contains("circle")));
     EXPECT_THAT(training_courses("delaunay-beam"), Contains("fsd_1"));
-    EXPECT_THAT(training_courses("rld-shape-context"), Contains("fsd_6"));
+    EXPECT_THAT(training_courses("astar-lane"), Contains("fsd_2"));
+    EXPECT_THAT(training_courses("rld-shape"), Contains("fsd_6"));
     EXPECT_THAT(training_courses("rld-learned"), AllOf(Contains("fsd_6"), Contains("kidney@4")));
-    for (const char* const none : {"rld-pair", "rld-context", "clc-longest", "no detector"})
+    for (const char* const none : {"rld-pair", "rld-context", "no detector"})
         EXPECT_THAT(training_courses(none), IsEmpty()) << none;
 }
 

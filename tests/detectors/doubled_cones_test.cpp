@@ -35,9 +35,7 @@ Scene doubled(const Scene& scene, double distance_m) {
 }
 
 std::vector<ConeId> ids(const Scene& scene) {
-    std::vector<ConeId> all;
-    for (const Cone& cone : scene.cones) all.push_back(cone.id);
-    return all;
+    return mapped(scene.cones, &Cone::id);
 }
 
 class DoubledConesOf : public testing::TestWithParam<std::string> {
@@ -94,8 +92,7 @@ TEST_P(DoubledConesOf, TheNearestConesAreCountedOnce) {
 
 class DoublesOfFront : public testing::TestWithParam<std::string> {};
 
-/// At 1, 5, 10, 20 and 30 cm, with all cones or every third one doubled, and with either of the two
-/// nearer.
+/// At 1, 5, 10, 20 and 30 cm, with all cones or every third one doubled, and either of the two nearer.
 TEST_P(DoublesOfFront, TakeNoTrustAway) {
     const auto detect = [&](const Scene& scene) {
         return make_detector(GetParam())->detect(scene, tests::kNoTimeLimit);

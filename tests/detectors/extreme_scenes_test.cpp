@@ -1,5 +1,4 @@
-// Scenes and parameters at the limits of double: every solver answers, and no solver ends the
-// program.
+// Scenes and parameters at the limits of double: every solver answers, and none ends the program.
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -33,9 +32,8 @@ TEST(ExtremeScenes, FarFromTheOriginNothingChanges) {
         const LaneGraphProblem there =
             make_problem(straight_lane({away, -2.0 * away}), {}, EdgeExtent::all_pairs);
         ASSERT_EQ(there.edges.size(), here.edges.size());
-        for (std::size_t e = 0; e < here.edges.size(); ++e) {
+        for (std::size_t e = 0; e < here.edges.size(); ++e)
             EXPECT_NEAR(there.edges[e].cost, here.edges[e].cost, 1e-9 * std::abs(here.edges[e].cost)) << away;
-        }
         EXPECT_EQ(there.conflicts, here.conflicts);
         EXPECT_EQ(there.far_apart, here.far_apart);
         EXPECT_EQ(there.near, here.near);
@@ -77,8 +75,7 @@ TEST(ExtremeScenes, EdgesAreAtLeast1em100Long) {
     for (const double spacing : {1e-160, 0.9e-100, 1.1e-100, 1e-9}) {
         Scene scene;
         scene.cones = {{1, {0.0, 0.0}}, {2, {spacing, 0.0}}};
-        RldParameters parameters;
-        parameters.d_e = spacing;
+        RldParameters parameters{.d_e = spacing};
         const bool allowed = spacing > 1e-100;
         EXPECT_EQ(make_problem(scene, parameters).edges.empty(), !allowed) << spacing;
         EXPECT_EQ(make_problem(scene, parameters, EdgeExtent::all_pairs).edges.at(0).high_cost, !allowed);
@@ -105,11 +102,9 @@ TEST(ExtremeScenes, AnInventedPointOfCbcIsNoAnswer) {
     scene.cones = {{8, {5.8825, 4.6447}}, {1, {-1.9522, 1.3658}}, {0, {-2.0448, 6.9194}},
                    {4, {7.1187, 2.5888}}, {3, {-3.6651, 0.7825}}, {5, {3.2839, 4.6543}},
                    {2, {-4.04, 5.0428}}};
-    RldParameters parameters;
-    parameters.pairing = Pairing::paper;
-    for (const auto& [name, report] : exact_reports(scene, parameters)) {
+    RldParameters parameters{.pairing = Pairing::paper};
+    for (const auto& [name, report] : exact_reports(scene, parameters))
         EXPECT_EQ(report.status, SolveStatus::infeasible) << name << ": " << report.message;
-    }
 }
 
 /// Found by cross-check. Two boundaries a kilometre apart, cones 2 km apart along them, spacings of 1 km
@@ -155,11 +150,7 @@ TEST(ExtremeScenes, CostsThatNoLibraryAcceptsAreAnError) {
         for (const double x : {0.25, 0.75, 1.25})
             scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
     }
-    RldParameters parameters;
-    parameters.d_e = 1000.0;
-    parameters.d_t = 1000.0;
-    parameters.s_crit = 1e6;
-    parameters.w_p = 1e6;
+    RldParameters parameters{.d_e = 1000.0, .d_t = 1000.0, .w_p = 1e6, .s_crit = 1e6};
     for (Cone& cone : scene.cones) cone.position.y() *= 0.4;
     ASSERT_FALSE(make_problem(scene, parameters).edges.empty());
     for (const RldSolverEntry& entry : rld_solvers()) {

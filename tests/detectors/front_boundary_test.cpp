@@ -234,10 +234,7 @@ struct Views {
 };
 
 Views views_of_one_boundary(const std::vector<Track>& tracks, double every_m) {
-    SceneOptions options;
-    options.false_positive_rates = {0.0};
-    options.ranges_m = {30.0};
-    options.every_m = every_m;
+    SceneOptions options{.false_positive_rates = {0.0}, .ranges_m = {30.0}, .every_m = every_m};
     const auto detector = make_detector("front");
     Views views;
     for (const Track& track : tracks) {

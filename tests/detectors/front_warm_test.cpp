@@ -83,10 +83,7 @@ struct Lap {
 
 /// `rate`: share of false cones, which persist along the lap.
 Lap lap_of(const std::string& track, double rate) {
-    SceneOptions options;
-    options.false_positive_rates = {rate};
-    options.ranges_m = {30.0};
-    options.persistent = true;
+    SceneOptions options{.false_positive_rates = {rate}, .ranges_m = {30.0}, .persistent = true};
     return Lap(track, options);
 }
 
@@ -105,9 +102,8 @@ Scene decoy_of(const Scene& scene) {
     Scene decoy = nearest_ahead(scene, 20);
     decoy.pose = {};
     std::ranges::sort(decoy.cones, {}, &Cone::id);
-    for (std::size_t i = 0; i < decoy.cones.size(); ++i) {
+    for (std::size_t i = 0; i < decoy.cones.size(); ++i)
         decoy.cones[i].position = {2.0 + 4.0 * static_cast<double>(i / 2), i % 2 == 0 ? 1.8 : -1.8};
-    }
     return decoy;
 }
 
@@ -252,12 +248,11 @@ Driven drive(const char* name, const SceneSet& set) {
 }
 
 TEST(FrontWarm, IsSteadierThanFrontAndNoWorseAmongFalseConesThatStay) {
-    SceneOptions options;
-    options.conditions = {"harsh"};
-    options.false_positive_rates = {0.5};
-    options.ranges_m = {30.0};
-    options.every_m = 1.1;
-    options.seed = 3;
+    SceneOptions options{.false_positive_rates = {0.5},
+                         .ranges_m = {30.0},
+                         .every_m = 1.1,
+                         .conditions = {"harsh"},
+                         .seed = 3};
     const SceneSet set =
         make_scene_set({"generated:hairpins@7", "generated:slalom@7", "generated:infield@7"}, options);
     ASSERT_GT(set.scenes.size(), 500U);

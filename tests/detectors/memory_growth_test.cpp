@@ -20,8 +20,7 @@ std::size_t heap_bytes() {
     return heap.uordblks + heap.hblkhd;
 }
 
-/// Growth of the heap in the second half of the calls, in turn on all scenes; the first half fills
-/// workspaces.
+/// Growth of the heap in the second half of the calls, in turn on all scenes; the first fills workspaces.
 std::ptrdiff_t growth_bytes(const std::vector<AnnotatedScene>& scenes, std::size_t calls,
                             const std::function<void(const Scene&)>& call) {
     std::size_t middle_bytes = 0;
@@ -34,15 +33,11 @@ std::ptrdiff_t growth_bytes(const std::vector<AnnotatedScene>& scenes, std::size
 
 /// CONELANE_MEMORY_CALLS=100000 makes more calls.
 TEST(Memory, DoesNotGrowWithTheCalls) {
-    SceneOptions options;
-    options.false_positive_rates = {0.2};
-    options.ranges_m = {20.0};
-    options.every_m = 60.0;
+    SceneOptions options{.false_positive_rates = {0.2}, .ranges_m = {20.0}, .every_m = 60.0};
     const std::vector<AnnotatedScene> scenes = make_scene_set({"generated:kidney"}, options).scenes;
     const char* const asked = std::getenv("CONELANE_MEMORY_CALLS");
     const std::size_t calls = asked == nullptr ? 2000 : std::stoul(asked);
-    // Even the smallest leak in every fourth call would exceed the blocks that the allocator holds back,
-    // which vary.
+    // Even the smallest leak in every fourth call would exceed the blocks that the allocator holds back.
     const auto most_bytes = static_cast<std::ptrdiff_t>(4 * calls);
     for (const char* const name : {"front", "clc"}) {
         const std::unique_ptr<LaneDetector> detector = make_detector(name);

@@ -21,15 +21,14 @@ constexpr double kObjectiveTolerance = 1e-9;
 /// Views of generated courses at four rates of false positives, one after another along a lap.
 const std::vector<Scene>& scenes() {
     static const std::vector<Scene> kScenes = [] {
-        SceneOptions options;
-        options.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
-        options.ranges_m = {20.0};
-        options.every_m = 17.0;
-        options.noise_sigma_m = 0.05;
-        options.pose_noise_lateral_m = 0.2;
-        options.pose_noise_yaw_rad = 0.05;
-        options.miss_rate = 0.03;
-        options.seed = 3;
+        SceneOptions options{.false_positive_rates = {0.0, 0.1, 0.3, 0.5},
+                             .ranges_m = {20.0},
+                             .every_m = 17.0,
+                             .noise_sigma_m = 0.05,
+                             .pose_noise_lateral_m = 0.2,
+                             .pose_noise_yaw_rad = 0.05,
+                             .miss_rate = 0.03,
+                             .seed = 3};
         std::vector<Scene> all;
         for (AnnotatedScene& made :
              make_scene_set({"generated:kidney", "generated:hairpins"}, options).scenes) {

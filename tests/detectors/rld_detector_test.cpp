@@ -10,10 +10,6 @@
 namespace conelane {
 namespace {
 
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 /// A straight lane along +x, cones every 3.2 m: left 1 to 8, right 101 to 108; the car is 1 m before it.
 Scene straight() {
     Scene scene;

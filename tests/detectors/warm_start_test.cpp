@@ -11,10 +11,7 @@ namespace conelane::experiments {
 namespace {
 
 SceneSet lap(double rate, double range_m) {
-    SceneOptions options;
-    options.false_positive_rates = {rate};
-    options.ranges_m = {range_m};
-    options.every_m = 2.2;
+    SceneOptions options{.false_positive_rates = {rate}, .ranges_m = {range_m}, .every_m = 2.2};
     return make_scene_set({"generated:kidney@5"}, options);
 }
 

@@ -45,11 +45,9 @@ int main() {
     for (const std::string_view name : conelane::rld_parameter_set_names()) {
         const RldParameters set = *conelane::rld_parameter_set(name);
         const std::string group = "set " + std::string(name);
-        for (const RldParameterField& field : conelane::rld_parameter_fields()) {
+        for (const RldParameterField& field : conelane::rld_parameter_fields())
             print(group, field.key, set.*field.value, field.lowest, field.highest, field.unit, "");
-        }
-        for (const RldParameterField& field : conelane::rld_extra_fields()) {
+        for (const RldParameterField& field : conelane::rld_extra_fields())
             print(group, field.key, set.*field.value, field.lowest, field.highest, field.unit, "");
-        }
     }
 }

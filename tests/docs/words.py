@@ -15,57 +15,15 @@ COVERED = ("*.md", "*.hpp", "*.cpp", "*.py", "*.mjs", "*.d.ts", "*.cmake", "CMak
 LISTS = ("docs/style.md", "tests/docs/words.py", "tests/docs/words_test.py")
 HASHES_ALLOWED = ("docs/benchmarks/", "CHANGELOG.md")
 
-# (pattern in lower case, what to write). Case is ignored; a space stands for any white space.
-PHRASES = [
-    (r"\b(\w+) that (?:is|are) no \1", "invalid ..."),
-    (r"that (?:is|are) none\b", "that does not exist, invalid"),
-    (r"no proof is claimed", "every claimed optimum is an optimum"),
-    (r"and of a start with error", "also the warm start, if status is error"),
-    (r"takes? the time and the memory that", "no time or memory limit"),
-    (r"the limit that its making ran into", "why construction stopped"),
-    (r"once (?:it|the clock) has struck", "once the time has ended; expiry is sticky"),
-    (r"(?:limit|deadline)(?: was| had| has| is)? (?:struck|strikes)", "the limit ended it"),
-    (r"what of an? \w+ (?:lies|is|are|they)", "the ... restricted to"),
-    (r"(?:right )?all but surely", "with calibrated probability; nearly always"),
-    (r"(?:hangs?|hung) by a thread", "the least certain cone"),
-    (r"(?:hangs?|hung) on rounding", "depends on rounding"),
-    (r"no failure leaves", "failures count in every mean"),
-    (r"(?:found|drawn|driven|told|learned|measured) anew", "... again, retrained"),
-    (r"\bmend(?:s|ed|ing)?\b", "fix"),
-    (r"such ones", "name the thing again"),
-    (r"the (?:longer|larger|shorter|smaller|nearer|farther) of both", "name the two things"),
-    (r"probability that the lane is right", "probability that the lane is usable"),
-    (r"nobody'?s fit", "not fitted"),
-    (r"goes on where it was(?: stopped)?", "resumes"),
-    (r"little sure", "uncertain"),
-    (r"is its business", "..."),
-    (r"on an? (?:loaded|busy|slower) (?:machine|day)", "docs/benchmarks/ and the machine"),
-    (r"(?:with|while) other (?:programs|work) (?:ran|runs?|running|shared)", "docs/benchmarks/ and the machine"),
-    (r"beside other work", "docs/benchmarks/ and the machine"),
-    (r"the other core was at work|both cores at work", "docs/benchmarks/ and the machine"),
-    (r"last week|this week|last session|this session|yesterday", "CHANGELOG.md"),
-    (r"the program before it|the code of today|today's (?:code|arithmetic|program)", "CHANGELOG.md"),
-    (r"\b(?:built|builds?|written|placed|solved|fitted|linked|stored?|start(?:s|ed)?|search(?:es|ed)?|draw) (?:\w+ ){0,2}anew\b", "... again"),
-    (r"\bheld against\b|\bholds? (?:\w+ ){1,5}against\b", "compared with"),
-    (r"\bbe it (?:a|an|by|that|under|with|through)\b", "also if, or"),
-    (r"looks? at (?:the|its) (?:clock|deadline)", "checks of the clock"),
-    (r"\bclock (?:strikes|struck)\b", "the time ends"),
-    (r"\bto be asked before\b", "call it before"),
-    (r"\b(?:one|two|three|four) at least\b", "at least two"),
-    (r"\bwhat (?:became|becomes) of\b", "the outcome of"),
-    (r"\bthe very (?:cones|lane|same|scene)\b", "exactly the same"),
-    (r"\bwhat is no\b", "an invalid ...; name the thing"),
-    (r"\bcut short\b", "interrupted, truncated"),
-    (r"\bhardly ever\b", "rarely"),
-    (r"\ba lane to drive by\b", "a usable lane"),
-    (r"\bwent wrong, or nothing\b", "the failure in words, or nothing"),
-]
-# In documents only, but not in the change log.
-DIARY = [
-    (r"\(\d[^()]{0,40} before\)", "CHANGELOG.md"),
-    (r"\bbefore (?:and|/) after\b", "docs/benchmarks/ or CHANGELOG.md"),
-    (r"since (?:yesterday|today)|until (?:yesterday|today)|as of today|of today\b", "the version"),
-]
+
+def read_phrases():
+    """(pattern, what to write) of words.txt: those for all files, and those for documents alone."""
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "words.txt"), encoding="utf-8") as stream:
+        parts = stream.read().split("[documents]")
+    return [[tuple(line.split("\t")) for line in part.splitlines() if line and not line.startswith("#")] for part in parts]
+
+
+PHRASES, DIARY = read_phrases()
 # At least seven hexadecimal digits with a letter and a digit among them; not 0x..., not part of a word, a path or a longer number.
 HASH = re.compile(r"(?<![\w./#%-])(?=[0-9a-f]*[0-9])(?=[0-9a-f]*[a-f])(?:[0-9a-f]{7,12}|[0-9a-f]{40})(?![\w./-]*\w)")
 NUMBER_WITH_EXPONENT = re.compile(r"\d+e\d+")

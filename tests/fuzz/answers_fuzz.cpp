@@ -1,6 +1,5 @@
 // Readers of answers of detectors and solvers: lanes, lanes from outside, the log of an unfinished run,
-// solutions, and the solution files of other solvers. A text that is read can be written and read
-// again.
+// solutions, and the solution files of other solvers. What is read can be written and read again.
 
 #include "conelane/formulation.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -11,6 +10,7 @@
 #include "model/lane_graph_model.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
+#include "tests/support/six_cone_lane.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -51,19 +51,8 @@ void read_solutions(const std::filesystem::path& file, const ScratchFolder& fold
     });
 }
 
-/// The problem of two straight boundaries of three cones.
-LaneGraphProblem small_problem() {
-    Scene scene;
-    for (const double y : {1.75, -1.75}) {
-        for (const double x : {1.0, 4.2, 7.4}) {
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
-        }
-    }
-    return make_problem(scene, {});
-}
-
 void read_solution_of_a_program(std::string_view bytes) {
-    static const LaneGraphProblem problem = small_problem();
+    static const LaneGraphProblem problem = make_problem(tests::six_cone_lane(), {});
     static const LaneGraphModel model(problem, Formulation::tight);
     std::istringstream stream{std::string(bytes)};
     answers([&] {

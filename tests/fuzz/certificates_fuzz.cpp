@@ -18,8 +18,7 @@
 namespace conelane::fuzz {
 namespace {
 
-/// The seeds in corpus/certificates are proofs about the lane of six cones. The optimum is both whole
-/// boundaries.
+/// The seeds in corpus/certificates are proofs about the lane of six cones, whose optimum is the whole lane.
 constexpr double kOptimum = -4.0;
 constexpr double kTolerance = 1e-5;
 

@@ -45,8 +45,7 @@ void require_lane_of(const Scene& scene, const Lane& lane, bool may_be_one_sided
     }
 }
 
-/// What holds for every answer; `tests/detectors/detector_contract_test.cpp` asks the same of readable
-/// scenes.
+/// What holds for every answer; `detector_contract_test` asks the same of readable scenes.
 void require_contract(const Scene& scene, const LaneAnswer& answer, bool may_be_one_sided) {
     switch (answer.status) {
         case LaneStatus::found:
@@ -75,9 +74,8 @@ void require_contract(const Scene& scene, const LaneAnswer& answer, bool may_be_
             "a confidence is a probability");
     require(!answer.trusted_m || *answer.trusted_m >= 0.0, "a trusted length is none below 0");
     if (answer.enumeration) {
-        for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+        for (const LaneCandidate& candidate : answer.enumeration->candidates)
             require_lane_of(scene, candidate.lane, may_be_one_sided);
-        }
     }
 }
 
@@ -104,9 +102,8 @@ void detect_on(FuzzedDataProvider& input) {
     chosen.reset();
     const int scenes = input.ConsumeIntegralInRange(1, 3);
     for (int i = 0; i < scenes; ++i) {
-        DetectionLimits limits;
-        limits.time_limit_ms = input.PickValueInArray(kLimits_ms);
-        limits.keep_candidates = input.ConsumeBool();
+        DetectionLimits limits{.time_limit_ms = input.PickValueInArray(kLimits_ms),
+                               .keep_candidates = input.ConsumeBool()};
         const Scene scene = fuzzed_scene(input, 60);
         const double begin_s = processor_seconds();
         const LaneAnswer answer = chosen.detect(scene, limits);

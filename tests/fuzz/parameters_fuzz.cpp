@@ -1,14 +1,11 @@
-// Readers of everything that tells a run what to do: RLD parameters, those of other detectors, the
-// cards of detectors, the records of a run and of a tuning, round trips of an echo, and the names of
-// detectors from outside.
+// Readers of everything that tells a run what to do: RLD parameters, those of other detectors, the cards of
+// detectors, the record of a run, and the names of detectors from outside.
 
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/outside/outside_detector.hpp"
-#include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/run_record.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/studies/confidence_and_colour.hpp"
-#include "experiments/tuning/detector_tuning.hpp"
+#include "learning/tuning/detector_tuning.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
@@ -24,7 +21,7 @@ void read_all(std::string_view bytes) {
     static const ScratchFolder folder;
     const auto file = folder.write("input.json", bytes);
     answers([&] {
-        const RldParameters parameters = parse_rld_parameters(bytes, "input.json");
+        const RldParameters parameters = read_rld_parameters(file);
         validate(parameters);
         const auto again = folder.path() / "again.json";
         write_rld_parameters(again, parameters);
@@ -38,13 +35,11 @@ void read_all(std::string_view bytes) {
     });
     for (const std::string_view name : experiments::tunable_names()) {
         const DetectorRecipe& recipe = experiments::find_tunable(name);
-        answers([&] { (void)recipe.tuned()->make(experiments::parse_values(recipe, bytes, "input.json")); });
+        answers([&] { (void)recipe.tuned()->make(learning::parse_values(recipe, bytes, "input.json")); });
     }
     answers([&] { (void)read_detector_card(file).summary(); });
-    answers([&] { (void)experiments::read_echo_floor(file); });
-    answers([&] { (void)experiments::read_tuning_record(file); });
     const std::string text(bytes);
-    folder.write("run.json", bytes);
+    (void)folder.write("run.json", bytes);
     answers([&] { (void)experiments::read_run_record(folder.path()); });
     answers([&] { (void)experiments::parse_method(text); });
     (void)split_detectors({text});

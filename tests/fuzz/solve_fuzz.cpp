@@ -45,8 +45,7 @@ void solve_on(FuzzedDataProvider& input) {
     static const std::unique_ptr<RldSolver> exhaustive = core_solvers()[1].make(Formulation::tight);
     constexpr double kLimits_ms[]{0.0, 0.2, 0.5, 1.0, 2.0, 5.0, 20.0};
     constexpr std::size_t kFewCones = 7;
-    SolveLimits limits;
-    limits.time_limit_ms = input.PickValueInArray(kLimits_ms);
+    SolveLimits limits{.time_limit_ms = input.PickValueInArray(kLimits_ms)};
     const RldParameters parameters = fuzzed_parameters(input);
     const Scene scene = fuzzed_scene(input, 40);
     const SolvedScene solved = solve_scene(*path_pair, scene, parameters, {.limits = limits});

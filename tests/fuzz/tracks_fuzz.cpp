@@ -1,5 +1,4 @@
-// The track readers: the bytes as each format. The line `---` separates the two files of an FSD
-// track.
+// The track readers: the bytes as each format. The line `---` separates the files of an FSD track.
 
 #include "evaluation/formats/track_readers.hpp"
 #include "tests/fuzz/expectations.hpp"
@@ -17,18 +16,16 @@ namespace {
 void require_consistent(const Track& track) {
     for (const Cone& cone : track.cones) require(cone.position.allFinite(), "a cone is finite");
     for (const std::vector<std::size_t>* boundary : {&track.left, &track.right}) {
-        for (const std::size_t index : *boundary) {
+        for (const std::size_t index : *boundary)
             require(index < track.cones.size(), "a boundary is made of cones");
-        }
         std::vector<std::size_t> sorted = *boundary;
         std::ranges::sort(sorted);
         require(std::ranges::adjacent_find(sorted) == sorted.end(), "a boundary has a cone once");
     }
     for (const RunFrame& frame : track.frames) {
         require(frame.pose.position.allFinite(), "a pose is finite");
-        for (const MapPlace& place : frame.map) {
+        for (const MapPlace& place : frame.map)
             require(place.cone < track.cones.size() && place.position.allFinite(), "a map is of cones");
-        }
     }
 }
 

@@ -11,11 +11,6 @@
 namespace conelane {
 namespace {
 
-using testing::Contains;
-using testing::Each;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 using tests::six_cone_lane;
 using P = RldParameters;
 
@@ -94,8 +89,7 @@ std::vector<Case> cases() {
 }
 
 RldParameters parameters_of(const Case& tried) {
-    RldParameters parameters;
-    parameters.pairing = tried.pairing;
+    RldParameters parameters{.pairing = tried.pairing};
     for (const auto& [parameter, value] : tried.set) parameters.*parameter = value;
     return parameters;
 }
@@ -123,9 +117,7 @@ TEST(Check, NamesTheBrokenRuleAndAgreesWithTheProblem) {
 /// Edges {0, 1} and {2, 3}, the latter's end past the former by less than a tie of 1e-9 m, then by more.
 TEST(Check, EdgesCrossOnlyBeyondATieAndWhereTheyMayNot) {
     Scene scene = with_cones({}, {{0, 0}, {4, 0}, {2, -5e-10}, {2, 3}});
-    RldParameters parameters;
-    parameters.d_min = 0.0;
-    parameters.forbid_crossing = true;
+    RldParameters parameters{.d_min = 0.0, .forbid_crossing = true};
     const LaneGraph touching{{{0, 1}, {2, 3}}};
     const auto violations = [&] { return check(scene, parameters, touching).violations; };
     EXPECT_THAT(violations(), Each(Not(HasSubstr("cross"))));

@@ -38,8 +38,7 @@ TEST(ColorCost, IsOnTheWrongSideOfAStraightOnly) {
 }
 
 TEST(ColorCost, SparesBothBoundariesOfABend) {
-    // The outer boundary of a bend to the right crosses the axis, but the car is to the right of its
-    // line.
+    // The outer boundary of a bend to the right crosses the axis, but the car is right of its line.
     EXPECT_EQ(color_cost(kBlue, {4.5, 1.0}, {6.5, -1.6}), 0.0);
     // The inner one is right of the axis, but its line has turned so far that the car is to its right.
     EXPECT_EQ(color_cost(kYellow, {3.0, -2.0}, {4.4, -4.6}), 0.0);
@@ -80,8 +79,7 @@ TEST(ColorCost, IsThatOfTheIndependentChecker) {
             const double blue = static_cast<double>((7 * i + seed) % 10) / 10.0;
             scene.cones[i].color_probabilities = {.unknown = 0.1, .blue = blue, .yellow = 0.9 - blue};
         }
-        RldParameters parameters;
-        parameters.w_color = 100.0;
+        RldParameters parameters{.w_color = 100.0};
         const LaneGraphProblem problem = make_problem(scene, parameters);
         for (const ProblemEdge& edge : problem.edges) {
             const CheckReport report = check(scene, parameters, LaneGraph{{{edge.i, edge.j}}});

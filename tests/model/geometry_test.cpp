@@ -52,8 +52,7 @@ TEST(SegmentDistance, ExactlyFacingSegmentsTieAndCountAsBetweenEnds) {
     const SegmentDistance facing = segment_distance({{0, 0}, {4, 0}}, {{0, 3}, {4, 3}});
     EXPECT_DOUBLE_EQ(facing.distance_m, 3.0);
     EXPECT_TRUE(facing.between_ends);
-    // The segments are shifted along: an end faces the inside of the other, so the distance is not between
-    // two ends.
+    // The segments are shifted along: an end faces the inside of the other, so it is not between two ends.
     EXPECT_FALSE(segment_distance({{0, 0}, {4, 0}}, {{1, 3}, {5, 3}}).between_ends);
 }
 

@@ -1,5 +1,4 @@
-// The program of a problem: an update gives the same as a new program; lane graphs carried from scene to
-// scene.
+// The program of a problem: an update equals a new program; lane graphs are carried from scene to scene.
 
 #include "model/lane_graph_model.hpp"
 
@@ -80,15 +79,13 @@ TEST(IsFeasible, AgreesWithTheVerificationAndTheChecker) {
             return boost::random::uniform_int_distribution<std::size_t>(0, count - 1)(random);
         };
         const Scene scene = tests::random_scene(seed, 8);
-        RldParameters parameters;
-        parameters.s_crit = 20.0;
-        parameters.t_crit = 30.0;
-        parameters.d_max = 9.0;
-        parameters.pairing = seed % 2 == 0 ? Pairing::paper : Pairing::near_far;
+        RldParameters parameters{.d_max = 9.0,
+                                 .s_crit = 20.0,
+                                 .t_crit = 30.0,
+                                 .pairing = seed % 2 == 0 ? Pairing::paper : Pairing::near_far};
         const LaneGraphProblem problem = make_problem(scene, parameters);
         for (int trial = 0; trial < 40; ++trial) {
-            // Two chains, over cones of even and of odd index, as the lane was made; sometimes with a stray
-            // edge.
+            // Two chains, over cones of even and of odd index, as the lane was made; sometimes a stray edge.
             LaneGraph graph;
             for (const std::size_t side : {0u, 1u}) {
                 const std::size_t length = 1 + below(3);

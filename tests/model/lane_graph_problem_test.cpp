@@ -2,13 +2,13 @@
 
 #include "conelane/lane_graph_problem.hpp"
 
+#include "tests/support/cones_at.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
 
-using testing::ElementsAre;
 using tests::six_cone_lane;
 
 constexpr double kRounding = 1e-9;
@@ -67,13 +67,10 @@ TEST(LaneGraphProblem, AValueOnItsLimitIsWithinIt) {
 
 /// The car looks along +y: cones to its left have a smaller x.
 TEST(LaneGraphProblem, NearConesAreByTheCarsAxis) {
-    Scene scene;
+    Scene scene =
+        tests::cones_at({{-1.5, 2.0}, {1.5, 2.0}, {-4.4, 3.0}, {4.6, 3.0}, {-4.4, -1.0}, {0.0, 9.0}});
     scene.pose.yaw_rad = std::numbers::pi / 2;
-    for (const Point& position : {Point(-1.5, 2.0), Point(1.5, 2.0), Point(-4.4, 3.0), Point(4.6, 3.0),
-                                  Point(-4.4, -1.0), Point(0.0, 9.0)})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-    RldParameters parameters;
-    parameters.d_near = 8.0;
+    RldParameters parameters{.d_near = 8.0};
     EXPECT_THAT(make_problem(scene, parameters).near, ElementsAre(true, true, true, true, true, false));
     parameters.d_side = 4.5;
     EXPECT_THAT(make_problem(scene, parameters).near, ElementsAre(true, true, true, false, true, false));
@@ -90,8 +87,7 @@ TEST(LaneGraphProblem, AnEdgeWithoutLengthIsNeverAllowed) {
 }
 
 TEST(LaneGraphProblem, EdgesThatAreTooCloseConflictExceptBetweenFacingCones) {
-    RldParameters parameters;
-    parameters.d_min = 3.5;
+    RldParameters parameters{.d_min = 3.5};
     EXPECT_FALSE(in_conflict(make_problem(six_cone_lane(1.6), parameters)));
     parameters.d_min = 3.6;
     EXPECT_TRUE(in_conflict(make_problem(six_cone_lane(1.6), parameters)));
@@ -99,8 +95,7 @@ TEST(LaneGraphProblem, EdgesThatAreTooCloseConflictExceptBetweenFacingCones) {
 }
 
 TEST(LaneGraphProblem, CrossingsConflictWhereTheyAreForbidden) {
-    RldParameters parameters;
-    parameters.d_min = 0.0;
+    RldParameters parameters{.d_min = 0.0};
     EXPECT_FALSE(in_conflict(make_problem(six_cone_lane(), parameters), {1, 5}, {2, 4}));
     parameters.forbid_crossing = true;
     EXPECT_TRUE(in_conflict(make_problem(six_cone_lane(), parameters), {1, 5}, {2, 4}));
@@ -117,8 +112,7 @@ TEST(LaneGraphProblem, TurnsCostTheirAngleAndTheSharpestAreForbidden) {
 }
 
 TEST(LaneGraphProblem, OnlyFarConesAreTooFarApart) {
-    RldParameters parameters;
-    parameters.d_max = 3.5;
+    RldParameters parameters{.d_max = 3.5};
     EXPECT_THAT(make_problem(six_cone_lane(), parameters).far_apart, testing::IsEmpty());
     parameters.d_max = 3.4;
     EXPECT_THAT(make_problem(six_cone_lane(), parameters).far_apart, ElementsAre(testing::Pair(2, 5)));

@@ -3,13 +3,11 @@
 #include "model/near_edges.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 class RandomPoints {
   public:
@@ -52,10 +50,7 @@ TEST(ComeCloser, SaysWhatTheDistanceSays) {
 
 /// Edges 0 - 1 and 2 - 3 across a lane 4 m wide, and 4 - 5 behind.
 Scene three_edges() {
-    Scene scene;
-    for (const Point& at : std::vector<Point>{{0, 2}, {3, 2}, {0, -2}, {3, -2}, {-7, 2}, {-4, 2}})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), at});
-    return scene;
+    return tests::cones_at({{0, 2}, {3, 2}, {0, -2}, {3, -2}, {-7, 2}, {-4, 2}});
 }
 
 std::vector<ProblemEdge> edges_between(const std::vector<std::pair<std::size_t, std::size_t>>& cones) {

@@ -16,8 +16,7 @@ using tests::cones_at;
 /// Cones at the same distance have the same rank.
 TEST(NearestCones, AtTheSameDistanceAreAllAmongTheNearest) {
     const Scene star = cones_at({{0.0, 0.0}, {3.2, 0.0}, {0.0, 3.2}, {-3.2, 0.0}, {0.0, -3.2}});
-    RldParameters parameters;
-    parameters.nearest_of_edge = 1.0;
+    RldParameters parameters{.nearest_of_edge = 1.0};
     std::size_t rays = 0;
     for (const ProblemEdge& edge : make_problem(star, parameters).edges) rays += edge.i == 0 ? 1 : 0;
     EXPECT_EQ(rays, 4U);
@@ -31,9 +30,7 @@ TEST(NearestCones, AreThoseOfTheDefinition) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 14);
-        RldParameters parameters;
-        parameters.d_gap = 9.0;
-        parameters.theta_gap = 0.7;
+        RldParameters parameters{.d_gap = 9.0, .theta_gap = 0.7};
         const LaneGraphProblem unlimited = make_problem(scene, parameters);
         parameters.nearest_of_edge = static_cast<double>(1 + seed % 4);
         parameters.nearest_of_gap = static_cast<double>(2 + seed % 5);
@@ -70,10 +67,8 @@ TEST(NearestCones, ChangeNoCost) {
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 12);
-        RldParameters parameters;
-        parameters.d_gap = 9.0;
-        parameters.facing_weight = 0.7;
-        parameters.learned_costs = tests::random_learned_costs(seed, 4);
+        RldParameters parameters{
+            .facing_weight = 0.7, .d_gap = 9.0, .learned_costs = tests::random_learned_costs(seed, 4)};
         const LaneGraphProblem unlimited = make_problem(scene, parameters);
         parameters.nearest_of_edge = 3.0;
         parameters.nearest_of_gap = 4.0;

@@ -12,11 +12,7 @@ namespace conelane {
 namespace {
 
 RldParameters with_all_costs() {
-    RldParameters parameters;
-    parameters.unevenness_weight = 0.3;
-    parameters.facing_weight = 0.8;
-    parameters.near_end_weight = 0.9;
-    return parameters;
+    return RldParameters{.unevenness_weight = 0.3, .facing_weight = 0.8, .near_end_weight = 0.9};
 }
 
 TEST(ProblemLimits, ADeadlineThatDoesNotPassChangesNothing) {
@@ -27,13 +23,11 @@ TEST(ProblemLimits, ADeadlineThatDoesNotPassChangesNothing) {
         ASSERT_TRUE(limited.problem);
         EXPECT_FALSE(limited.stopped_by);
         ASSERT_EQ(limited.problem->edges.size(), plain.edges.size());
-        for (std::size_t e = 0; e < plain.edges.size(); ++e) {
+        for (std::size_t e = 0; e < plain.edges.size(); ++e)
             EXPECT_EQ(limited.problem->edges[e].cost, plain.edges[e].cost);
-        }
         ASSERT_EQ(limited.problem->turns.size(), plain.turns.size());
-        for (std::size_t t = 0; t < plain.turns.size(); ++t) {
+        for (std::size_t t = 0; t < plain.turns.size(); ++t)
             EXPECT_EQ(limited.problem->turns[t].cost, plain.turns[t].cost);
-        }
         EXPECT_EQ(limited.problem->conflicts, plain.conflicts);
         EXPECT_EQ(limited.problem->far_apart, plain.far_apart);
     }

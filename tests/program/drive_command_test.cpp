@@ -9,9 +9,6 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::HasSubstr;
-using testing::StartsWith;
-
 class DriveCommand : public ProgramFixture {
   protected:
     Outcome drive(const std::string& arguments) { return run("drive " + arguments); }

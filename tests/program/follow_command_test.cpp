@@ -11,8 +11,6 @@ namespace conelane::experiments {
 namespace {
 
 using nlohmann::json;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 json to_json(const Frame& frame, bool with_time) {
     json cones = json::array();
@@ -44,9 +42,8 @@ class FollowCommand : public ProgramFixture {
     static std::vector<Frame> frames(double to_m, bool with_ids = true) {
         std::vector<Frame> all;
         const tests::DrivenCourse course = tests::oval(1);
-        for (int i = 0; 0.6 * i <= to_m; ++i) {
+        for (int i = 0; 0.6 * i <= to_m; ++i)
             all.push_back(tests::frame_at(course, 0.6 * i, 0.1 * i, {.with_ids = with_ids}));
-        }
         return all;
     }
     static std::string lines_of(const std::vector<Frame>& frames, bool with_time = true) {
@@ -55,9 +52,8 @@ class FollowCommand : public ProgramFixture {
         return text;
     }
     std::vector<json> plans_in(const std::string& text) {
-        std::vector<json> plans;
-        for (const std::string& line : ProgramFixture::lines_of(text)) plans.push_back(json::parse(line));
-        return plans;
+        return mapped(ProgramFixture::lines_of(text),
+                      [](const std::string& line) { return json::parse(line); });
     }
 };
 
@@ -168,6 +164,29 @@ TEST_F(FollowCommand, ALapGivesTheCourseAndTheStop) {
     // Another detector, and more laps than the frames have.
     ASSERT_EQ(follow("--follow run.frames.jsonl --method clc --laps 2 --out e.jsonl").exit_code, 0);
     EXPECT_NE(plans_in(text_of(path("e.jsonl"))).back().at("state"), "finished");
+}
+
+TEST_F(FollowCommand, APagePlaysTheRunAndSaysWhereThereWasNoLane) {
+    std::vector<Frame> run = frames(6.0);
+    for (std::size_t i = 4; i < 7; ++i) run[i].cones.clear();
+    file_with(lines_of(run), "run.frames.jsonl");
+    const Outcome outcome = follow("--follow run.frames.jsonl --out p.jsonl --page p.html --time-limit inf");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const std::string page = text_of(path("p.html"));
+    const std::string begin = R"(id="race-data">)";
+    const std::size_t from = page.find(begin) + begin.size();
+    const json race = json::parse(page.substr(from, page.find("</script>", from) - from));
+    const std::vector<json> plans = plans_in(text_of(path("p.jsonl")));
+    ASSERT_EQ(race.at("frames").size(), plans.size());
+    for (std::size_t i = 0; i < plans.size(); ++i)
+        EXPECT_EQ(race.at("frames")[i].at("state"), plans[i].at("state")) << i;
+    EXPECT_GT(race.at("frames")[0].at("left").size(), 8U);
+    EXPECT_THAT(page, HasSubstr(R"(data-frame="4")"));
+    EXPECT_THAT(page, HasSubstr("fewer than 3 cones within 20 m ahead"));
+    // A page that cannot be made leaves the old files.
+    EXPECT_EQ(follow("--follow run.frames.jsonl --out p.jsonl --page none/p.html").exit_code, 2);
+    EXPECT_EQ(plans_in(text_of(path("p.jsonl"))), plans);
+    EXPECT_THAT(follow("--follow - --out - --page q.html <run.frames.jsonl").errors, HasSubstr("--page: "));
 }
 
 TEST_F(FollowCommand, ARealSkidpadIsFollowed) {

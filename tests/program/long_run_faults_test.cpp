@@ -22,14 +22,12 @@ namespace conelane::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 class LongRun : public ProgramFixture {
   protected:
     void SetUp() override {
         ProgramFixture::SetUp();
-        // Pages would take most of the time here. With this Python they fail at once, and the run continues
-        // without.
+        // Pages would take most of the time here. With this Python they fail at once, and the run goes on.
         ::setenv("PYTHONHOME", "nowhere", 1);
     }
 
@@ -42,10 +40,9 @@ class LongRun : public ProgramFixture {
 
     /// Answers without their times, and the status of each.
     [[nodiscard]] std::vector<std::pair<Lane, LaneStatus>> answers(const std::string& file) const {
-        std::vector<std::pair<Lane, LaneStatus>> all;
-        for (const LaneRecord& record : read_lanes(path(file)))
-            all.emplace_back(record.answer.lane, record.answer.status);
-        return all;
+        return mapped(read_lanes(path(file)), [](const LaneRecord& record) {
+            return std::pair(record.answer.lane, record.answer.status);
+        });
     }
 
     /// No file under a temporary name.
@@ -55,8 +52,7 @@ class LongRun : public ProgramFixture {
     }
 };
 
-/// Four laps of a few scenes each, with a limit that no solve reaches, so that answers depend only on the
-/// scenes.
+/// Four laps of a few scenes each, with a limit that no solve reaches: answers depend only on the scenes.
 std::string compare(const std::string& detector, const std::string& folder, int every_m = 12) {
     return "compare --tracks generated:circle generated:kidney --condition paper --fp 0,0.3 "
            "--nearest 14 --time-limit 60000 --every " +

@@ -13,9 +13,6 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-
 /// Whether the program already waits for the signal; it blocks the signal to do so.
 bool waits_for(pid_t program, int signal) {
     std::ifstream status("/proc/" + std::to_string(program) + "/status");
@@ -42,9 +39,8 @@ class Interruption : public Program {
         EXPECT_EQ(text_of(path("stderr")), "conelane: interrupted\n");
         EXPECT_EQ(text_of(path("stdout")), "");
         EXPECT_TRUE(std::filesystem::is_empty(path("tmp")));
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(path(""))) {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path("")))
             EXPECT_THAT(entry.path().string(), Not(HasSubstr(".tmp")));
-        }
     }
     /// Work that takes seconds.
     void make_dense_scenes() {

@@ -11,59 +11,18 @@ namespace conelane::experiments {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
-TEST_F(Program, TrainsFrontAndResumes) {
-    const std::string command =
-        "train front --tracks generated:slalom@1 --hold-out generated:kidney@2 --hold-out-every 80 --fp 0.3 "
-        "--draws 1 --trust-draws 4 --imitation-steps 4 --search-steps 4 --judge-steps 4 --figures-every 6 "
-        "--seed 3 --out ";
-    const Outcome whole = run_well(command + "whole.json");
-    EXPECT_THAT(whole.output, HasSubstr("step 12 of 12, judging"));
-    EXPECT_THAT(whole.output, HasSubstr("usable"));
-    run_well(command + "first.json --checkpoint c.json");
-    const Outcome again = run_well(command + "again.json --checkpoint c.json --threads 2");
-    EXPECT_THAT(again.output, Not(HasSubstr("step"))) << "nothing is left to do";
-    const auto weights = [&](const std::string& file) {
-        auto json = nlohmann::json::parse(text_of(path(file)));
-        json.erase("training");  // a run without remaining work has no figures
-        return json;
-    };
-    EXPECT_EQ(weights("again.json"), weights("whole.json"));
-    const Outcome other = run(command + "other.json --checkpoint c.json --beam 7");
-    EXPECT_EQ(other.exit_code, 2);
-    EXPECT_THAT(other.errors, HasSubstr("c.json"));
-    EXPECT_FALSE(std::filesystem::exists(path("other.json")));
-}
-
-TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColorStudyUses) {
-    const std::string tune =
+TEST_F(Program, TuneWithContextAndShapeLeavesARecord) {
+    const Outcome tuned = run_well(
         "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
-        "--shape --folds 2 --rounds 1 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
-    const Outcome tuned = run_well(tune);
-    EXPECT_THAT(tuned.output, HasSubstr("held out circle"));
+        "--shape --evaluations 3 --time-limit 1000 --out p.json");
+    EXPECT_THAT(tuned.output, HasSubstr("accuracy on "));
     const nlohmann::json record = nlohmann::json::parse(text_of(path("p.record.json")));
     EXPECT_EQ(record["nearest"], 8);
     EXPECT_EQ(record["context"], 16);
     EXPECT_EQ(record["shape"], true);
-    EXPECT_EQ(record["rounds"], 1);
+    EXPECT_GE(record["figure"], record["figure_of_start"]);
     EXPECT_TRUE(has_shape_costs(read_rld_parameters(path("p.json"))));
-    std::size_t counted = 0;
-    for (const auto& [cause, scenes] : record["losses"]["0.3"].items()) counted += scenes.get<std::size_t>();
-    EXPECT_GT(counted, 5U);
-    EXPECT_TRUE(record.contains("wrong_cones"));
-    EXPECT_EQ(run(tune).output, tuned.output) << "from its log";
-
-    const Outcome study = run_well("study confidence-and-colour --record p.record.json --out study.jsonl");
-    EXPECT_THAT(study.output, HasSubstr("colours, 20 % wrong"));
-    // Geometry alone, on the held-out tracks, gives the figures of the tuning.
-    const nlohmann::json geometry = json_lines("study.jsonl").front();
-    EXPECT_EQ(geometry["known"], "geometry alone");
-    EXPECT_EQ(geometry["context"], 16);
-    EXPECT_NEAR(geometry["accurate"].get<double>(), record["held_out_figures"]["mean"].get<double>(), 1e-12);
-    expect_refused("study confidence-and-colour --record p.json", {"p.json"});
-    expect_refused("study confidence-and-colour --record p.record.json --tracks generated:circle",
-                   {"--tracks", "straight"});
 }
 
 TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
@@ -101,9 +60,43 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
         with_all += is_all ? 1 : 0;
     }
     EXPECT_EQ(with_all, 3U);
-    expect_end("study", 0, {"confidence-and-colour  how much more accurate"});
+    expect_end("study", 0, {"front-beam  "});
     const Outcome beams = run("study front-beam --scenes s.scenes.jsonl --beams 5,15 --reference-beam 40");
     EXPECT_THAT(beams.output, HasSubstr("best score"));
+}
+
+TEST_F(Program, ShardsOfASolverStudyAreJoinedWithoutSolvingAgain) {
+    run_well(
+        "scenes --tracks generated:circle generated:straight --fp 0.3 --range 25 --every 40 --out "
+        "s.scenes.jsonl");
+    const std::string study =
+        "study backends --scenes s.scenes.jsonl --sizes 8 --solvers path-pair,cbc --out ";
+    run_well(study + "0.jsonl --shard 0/2 --time-limit 0.001 --then 30000");
+    run_well(study + "1.jsonl --shard 1/2");
+    run_well(study + "whole.jsonl --stored 0.jsonl,1.jsonl");
+    const auto solves = [&](const std::vector<std::string>& files) {
+        std::map<std::string, double> latencies_ms;
+        for (const std::string& file : files) {
+            for (const nlohmann::json& row : json_lines(file)) {
+                if (!row.contains("row"))
+                    latencies_ms[row["backend"].get<std::string>() + row["scene"].get<std::string>()] =
+                        row["latency_ms"];
+            }
+        }
+        return latencies_ms;
+    };
+    EXPECT_EQ(solves({"whole.jsonl"}), solves({"0.jsonl", "1.jsonl"}));
+    std::set<double> limits_ms;
+    for (const nlohmann::json& row : json_lines("whole.jsonl")) {
+        if (row.value("row", "") == "summary") {
+            EXPECT_TRUE(row.contains("par10_ms_interval")) << "two courses";
+        }
+        if (!row.contains("row")) limits_ms.insert(row["limit_ms"].get<double>());
+    }
+    EXPECT_EQ(limits_ms, (std::set<double>{1000.0, 30000.0}));
+    expect_refused(study + "x.jsonl --params shape --stored 0.jsonl", {"0.jsonl:1", "parameters"});
+    expect_refused(study + "x.jsonl --time-limit 100 --then 50", {"--then", "ascending"});
+    expect_refused(study + "x.jsonl --shard 2/2", {"--shard", "2/2"});
 }
 
 }  // namespace

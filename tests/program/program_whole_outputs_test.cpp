@@ -13,7 +13,6 @@ namespace conelane::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 class WholeOutputs : public Program {
   protected:
@@ -82,31 +81,9 @@ TEST_F(WholeOutputs, OfInterruptedInstancesAreNotWritten) {
     }
     run_well(kInstances);
     const auto before = contents("made");
-    EXPECT_EQ(before.size(), 5U);
+    EXPECT_EQ(before.size(), 6U);
     interrupt(kMoreInstances, SIGINT, "made", "curvy");
     EXPECT_EQ(contents("made"), before) << "the old library";
-}
-
-TEST_F(WholeOutputs, OfInstancesHoldOneLibrary) {
-    run_well(kInstances);
-    file_with("mine", "made/notes.txt");
-    run_well("instances --tracks generated:straight --fp 0.5 --every 1000 --nearest 12 --out made");
-    const auto files = contents("made");
-    EXPECT_EQ(files.at("notes.txt"), "mine");
-    std::size_t programs = 0;
-    for (const auto& [name, text] : files) {
-        if (!name.ends_with(".mps.gz")) continue;
-        ++programs;
-        EXPECT_TRUE(name.starts_with("straight")) << name << " is of the library before";
-        EXPECT_THAT(files.at("conelane.test"), HasSubstr(name));
-    }
-    EXPECT_EQ(programs, 2U);
-    // A program that no list names may belong to any library.
-    file_with("x", "made/stray.tight.mps.gz");
-    expect_refused(kInstances, {"made", "stray.tight.mps.gz", "conelane.test"});
-    fs::remove(path("made/conelane.test"));
-    fs::remove(path("made/stray.tight.mps.gz"));
-    expect_refused(kInstances, {"made", "straight"});
 }
 
 TEST_F(WholeOutputs, OfInstancesOnAFullDiskAreNotWritten) {

@@ -4,6 +4,7 @@ import sys
 import threading
 import time
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -237,25 +238,9 @@ class Refusals(unittest.TestCase):
 
 def run_together(calls):
     """Runs the calls in threads that start at once; the results in order. What a thread raises is raised here."""
-    results = [None] * len(calls)
     gate = threading.Barrier(len(calls))
-
-    def run(i):
-        gate.wait()
-        try:
-            results[i] = calls[i]()
-        except Exception as error:  # handed over to the test
-            results[i] = error
-
-    threads = [threading.Thread(target=run, args=(i,)) for i in range(len(calls))]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    for result in results:
-        if isinstance(result, Exception):
-            raise result
-    return results
+    with ThreadPoolExecutor(len(calls)) as pool:
+        return list(pool.map(lambda call: (gate.wait(), call())[1], calls))
 
 
 class Threads(unittest.TestCase):

@@ -14,8 +14,11 @@ from pathlib import Path
 
 import conelane
 import conelane._core
+import conelane.bags
+import conelane.frames
 import conelane.ft_fsd
 import conelane.messages
+import conelane.replay
 
 SOURCES = Path(sys.argv.pop(1)) if len(sys.argv) > 1 else Path(__file__).parents[2]
 
@@ -30,7 +33,7 @@ def documented(thing, name):
 
 
 def all_docstrings():
-    for module in (conelane, conelane.ft_fsd, conelane.messages):
+    for module in (conelane, conelane.bags, conelane.frames, conelane.ft_fsd, conelane.messages, conelane.replay):
         yield module.__name__, module.__doc__, vars(module)
         for name in module.__all__:
             for member, text in documented(getattr(module, name), f"{module.__name__}.{name}"):

@@ -306,6 +306,29 @@ class Missions(unittest.TestCase):
         self.assertTrue(75.0 <= stop_at < 80.0, stop_at)
         self.assertEqual(planner.plan.state, "finished")
 
+    def test_a_skidpad_anywhere_in_the_map_is_found_and_driven(self):
+        """As nodes call it: the whole map in each call, and the pose of the car on it, wherever the map has its origin."""
+        centres, turn = np.array([[0.0, -9.125], [0.0, 9.125]]), np.array([[np.cos(0.5), np.sin(0.5)], [-np.sin(0.5), np.cos(0.5)]])
+        lane = [[x, y] for x in (-14.0, -11.0, 11.0, 14.0) for y in (1.5, -1.5)]
+        rings = np.vstack([centre + radius * np.column_stack([np.cos(a), np.sin(a)]) for centre in centres for radius in (7.625, 10.625)
+                           for a in [2.0 * np.pi * np.arange(16) / 16 + 0.1]])
+        free = (np.abs(np.linalg.norm(rings[:, None] - centres, axis=2) - 9.125) > 1.4).all(axis=1) & (np.abs(rings[:, 1]) > 1.4)
+        cones = by_type(UNKNOWN=np.vstack([rings[free], lane]) @ turn + [30.0, -12.0])
+        planner, phases = PathPlanner(MissionTypes.skidpad, time_limit_ms=5000.0), []
+        place, ahead = np.array([-15.0, 0.0]), AHEAD
+        for _ in range(600):
+            path = planner.calculate_path_in_global_frame(cones, place @ turn + [30.0, -12.0], ahead @ turn)
+            phases += [] if planner.plan.phase in phases[-1:] else [planner.plan.phase]
+            if not len(path) or path[-1, 0] < 0.6:
+                break
+            points = (path[:, 1:3] - [30.0, -12.0]) @ turn.T
+            place, then = (np.array([np.interp(s, path[:, 0], column) for column in points.T]) for s in (0.6, 0.9))
+            ahead = (then - place) / np.linalg.norm(then - place)
+            on_circle = np.abs(np.linalg.norm(place - centres, axis=1) - 9.125).min() < 0.4
+            self.assertTrue(on_circle or abs(place[1]) < 0.6, place)
+        self.assertEqual(phases, ["approach", "right 1", "right 2", "left 1", "left 2", "exit"])
+        self.assertEqual((planner.plan.state, planner.plan.stop), ("finished", True))
+
 
 def data():
     """The folder of recorded runs, or None."""

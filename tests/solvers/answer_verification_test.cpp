@@ -10,9 +10,6 @@
 namespace conelane {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 const LaneGraph kLane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
 
 std::string violation(const LaneGraphProblem& problem, const LaneGraph& graph) {
@@ -44,9 +41,7 @@ class Liar : public RldSolver {
 };
 
 RldReport optimum() {
-    RldReport report;
-    report.status = SolveStatus::optimal;
-    report.lane_graph = kLane;
+    RldReport report{.status = SolveStatus::optimal, .lane_graph = kLane};
     report.objective = report.bound = -4.0;
     return report;
 }

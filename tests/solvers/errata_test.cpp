@@ -12,7 +12,6 @@
 namespace conelane {
 namespace {
 
-using testing::HasSubstr;
 using tests::cones_at;
 
 LaneGraphProblem paper_problem(const Scene& scene, const RldParameters& parameters = {}) {
@@ -79,10 +78,8 @@ TEST(Errata, Equation9AsPrintedNeedsAThirdEdge) {
 TEST(Errata, Equation26HasTheWeightOfTheObjective) {
     const Scene scene = cones_at({{4, 1.5}, {7.2, 2.1}, {4, -1.5}, {7.2, -0.9}});
     const LaneGraph graph{{{0, 1}, {2, 3}}};
-    RldParameters none;
-    none.w_p = 0.0;
-    RldParameters some;
-    some.w_p = 7.0;
+    RldParameters none{.w_p = 0.0};
+    RldParameters some{.w_p = 7.0};
     const LaneGraphProblem problem = paper_problem(scene, some);
     double heading_cost = 0.0;
     for (const ProblemEdge& edge : problem.edges) {
@@ -112,8 +109,7 @@ BinaryProgram with_upper_bound(const BinaryProgram& program, std::string_view fa
 TEST(Errata, Equation27AsPrintedBindsNothing) {
     // The left boundary's only continuation, past the near cone, is longer than s_crit allows.
     const Scene scene = cones_at({{4, 1.5}, {9.6, 1.5}, {4, -1.5}, {7.2, -1.5}});
-    RldParameters parameters;
-    parameters.w_s = 0.0;
+    RldParameters parameters{.w_s = 0.0};
     const LaneGraphProblem problem = paper_problem(scene, parameters);
     EXPECT_EQ(solve_corrected(problem).status, SolveStatus::infeasible);
     const LaneGraphModel model(problem, Formulation::paper);
@@ -127,10 +123,7 @@ TEST(Errata, Equation27AsPrintedBindsNothing) {
 TEST(Errata, Equation28AsPrintedBindsNothing) {
     // The left boundary bends by 80 degrees at its middle cone.
     const Scene scene = cones_at({{1, 1.5}, {4.2, 1.5}, {4.76, 4.65}, {1, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
-    RldParameters parameters;
-    parameters.w_t = 0.0;
-    parameters.w_p = 0.0;
-    parameters.d_max = 8.0;
+    RldParameters parameters{.w_t = 0.0, .w_p = 0.0, .d_max = 8.0};
     const LaneGraphProblem problem = paper_problem(scene, parameters);
     const RldReport corrected = solve_corrected(problem);
     const LaneGraphModel model(problem, Formulation::paper);
@@ -189,8 +182,7 @@ TEST(Errata, Equation12AsPrintedForbidsNearInnerCones) {
 /// dropping them after the solve, as the paper does, is no longer optimal: here the cycle holds cones that
 /// the boundaries go on through.
 TEST(Errata, Rows1To4AllowCyclesAndDroppingThemIsNotOptimal) {
-    RldParameters parameters;
-    parameters.theta_t = 2.0;
+    RldParameters parameters{.theta_t = 2.0};
     parameters.t_crit = 0.4;  // a turn of a little more than 90 degrees
     parameters.s_crit = 0.01;
     parameters.d_min = 0.0;

@@ -11,7 +11,7 @@ namespace {
 
 double relaxed(const Scene& scene, const RldParameters& parameters, Formulation formulation) {
     const LaneGraphProblem problem = make_problem(scene, parameters, parts(formulation).extent);
-    return linear_relaxation_optimum(LaneGraphModel(problem, formulation).program()).value();
+    return linear_relaxation(LaneGraphModel(problem, formulation).program()).value().optimum;
 }
 
 std::optional<double> optimum(const Scene& scene, const RldParameters& parameters) {
@@ -30,8 +30,7 @@ TEST(TightRelaxation, NoPathEndsHalfHereAndHalfThere) {
     scene.pose = {{0.0, 0.0}, 0.0};
     for (const int cone : {0, 1, 2, 3, 4}) scene.cones.push_back({cone, {4.0 + 3.2 * cone, 1.5}});
     for (const int cone : {0, 1, 2}) scene.cones.push_back({10 + cone, {4.0 + 3.2 * cone, -1.5}});
-    RldParameters parameters;
-    parameters.w_p = 0.0;
+    RldParameters parameters{.w_p = 0.0};
     parameters.d_max = 4.5;  // across and one spacing: 4.39 m
     EXPECT_NEAR(optimum(scene, parameters).value(), -5.0, 1e-9);
     EXPECT_NEAR(relaxed(scene, parameters, Formulation::tight), -5.0, 1e-7);
@@ -47,8 +46,7 @@ TEST(Relaxations, AreOrdered) {
     for (std::uint64_t seed = 0; seed < 150; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 6 + seed % 3);
-        RldParameters parameters;
-        parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+        RldParameters parameters{.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper};
         const std::optional<double> best = optimum(scene, parameters);
         if (!best) continue;
         ++feasible;

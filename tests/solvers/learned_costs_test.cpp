@@ -1,5 +1,4 @@
-// Learned costs in the problem: they equal the values of the networks, depend on what they should, and obey
-// their limits.
+// Learned costs in the problem: the values of the networks, of the right features, within their limits.
 
 #include "conelane/learned_costs.hpp"
 
@@ -30,9 +29,7 @@ std::size_t place_of(LearnedPart part, std::string_view name) {
 RldParameters with_weight(LearnedPart part, std::string_view name, double weight) {
     LearnedCosts costs = LearnedCosts::zero();
     costs.of(part).linear.at(place_of(part, name)) = weight;
-    RldParameters parameters;
-    parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
-    return parameters;
+    return RldParameters{.learned_costs = std::make_shared<const LearnedCosts>(costs)};
 }
 
 const ProblemEdge& edge_of(const LaneGraphProblem& problem, std::size_t i, std::size_t j) {
@@ -77,9 +74,7 @@ TEST(LearnedCosts, OfTheProblemAreThoseOfTheNetworks) {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 12);
-        RldParameters parameters;
-        parameters.d_gap = 9.0;
-        parameters.near_end_weight = 0.5;
+        RldParameters parameters{.near_end_weight = 0.5, .d_gap = 9.0};
         const LaneGraphProblem plain = make_problem(scene, parameters);
         parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7);
         const LearnedCosts& costs = *parameters.learned_costs;
@@ -127,9 +122,8 @@ TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
             scene.cones[i].color = i % 3 == 0 ? ConeColor::blue : ConeColor::yellow;
             scene.cones[i].confidence = 1.0 - 0.05 * static_cast<double>(i % 4);
         }
-        RldParameters parameters;
-        parameters.d_gap = 10.0;
-        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7);
+        RldParameters parameters{.d_gap = 10.0,
+                                 .learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7)};
         const LaneGraphProblem problem = make_problem(scene, parameters);
         tests::expect_edge_costs_confirmed(problem, scene, parameters);
         for (const ProblemTurn& turn : problem.turns) {
@@ -250,8 +244,7 @@ TEST(LearnedCosts, AreCheckedBeforeTheyAreUsed) {
               "turn.hidden: must have 42 numbers, not 41");
     EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::far_end).output[1] = std::nan(""); }),
               "far_end.output: must hold numbers between -1e6 and 1e6");
-    RldParameters parameters;
-    parameters.learned_costs = std::make_shared<const LearnedCosts>();
+    RldParameters parameters{.learned_costs = std::make_shared<const LearnedCosts>()};
     EXPECT_THROW((void)make_problem(tests::random_scene(1, 6), parameters), InvalidInput);
 }
 

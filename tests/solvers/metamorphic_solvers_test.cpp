@@ -1,5 +1,4 @@
-// Transformed scenes have the same optimum, for every solver of the registry and every formulation that it
-// uses.
+// Transformed scenes have the same optimum, for every solver and every formulation that it uses.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -43,9 +42,7 @@ double objective_of(const LaneGraph& graph, const Scene& original, const LaneGra
         return static_cast<std::size_t>(std::ranges::find(changed.cones, id, &Cone::id) -
                                         changed.cones.begin());
     };
-    for (const Edge& edge : graph.edges) {
-        same.edges.push_back(make_edge(place(edge.i), place(edge.j)));
-    }
+    for (const Edge& edge : graph.edges) same.edges.push_back(make_edge(place(edge.i), place(edge.j)));
     std::ranges::sort(same.edges);
     EXPECT_TRUE(is_feasible(changed_problem, same));
     return objective(changed_problem, same);

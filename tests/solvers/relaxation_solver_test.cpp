@@ -38,9 +38,8 @@ TEST(EdgeRelaxation, GradientAndHessianAreThoseOfTheObjective) {
         EXPECT_NEAR(gradient[v], slope, 1e-6) << "variable " << v;
         relaxation.gradient(plus, above);
         relaxation.gradient(minus, below);
-        for (std::size_t w = 0; w < x.size(); ++w) {
+        for (std::size_t w = 0; w < x.size(); ++w)
             EXPECT_NEAR(hessian[v][w], (above[w] - below[w]) / (2.0 * kStep), 1e-6) << v << ", " << w;
-        }
     }
 }
 
@@ -62,15 +61,13 @@ TEST(EdgeRelaxation, HoldsTheOptimumWithItsObjective) {
         }
         const EdgeRelaxation relaxation(problem);
         std::vector<double> x = relaxation.point(values);
-        for (std::size_t cone = 0; cone < degree.size(); ++cone) {
+        for (std::size_t cone = 0; cone < degree.size(); ++cone)
             x[relaxation.edges().size() + cone] = degree[cone] > 0.0 ? 1.0 : 0.0;
-        }
         EXPECT_NEAR(relaxation.objective(x), *best.objective, 1e-9) << "seed " << seed;
         for (const EdgeRelaxation::Row& row : relaxation.rows()) {
             double sum = 0.0;
-            for (const auto& [variable, factor] : row.terms) {
+            for (const auto& [variable, factor] : row.terms)
                 sum += factor * x[static_cast<std::size_t>(variable)];
-            }
             EXPECT_TRUE(row.lower <= sum && sum <= row.upper) << "seed " << seed;
         }
     }

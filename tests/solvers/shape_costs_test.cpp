@@ -41,8 +41,7 @@ double facing_cost(const Scene& scene, const RldParameters& parameters, std::siz
 }
 
 TEST(Unevenness, IsTheSquaredDifferenceInUnitsOfTheSpacingThreshold) {
-    RldParameters parameters;
-    parameters.d_t = 2.0;
+    RldParameters parameters{.d_t = 2.0};
     EXPECT_EQ(unevenness(3.0, 3.0, parameters), 0.0);
     EXPECT_EQ(unevenness(3.0, 4.0, parameters), 0.25);
     EXPECT_EQ(unevenness(4.0, 3.0, parameters), 0.25);
@@ -72,9 +71,7 @@ TEST(FacingCost, GrowsWithWidthOffsetAngleAndLength) {
 }
 
 TEST(NearEndFit, IsBestHalfALaneBesideTheCar) {
-    RldParameters parameters;
-    parameters.lane_width_m = 4.0;
-    parameters.d_t = 2.0;
+    RldParameters parameters{.d_t = 2.0, .lane_width_m = 4.0};
     Scene scene;
     for (const double side : {1.0, -1.0}) {
         EXPECT_EQ(near_end_fit(scene, {3, side * 2}, parameters), 1.0);
@@ -89,9 +86,7 @@ TEST(NearEndFit, IsBestHalfALaneBesideTheCar) {
 /// A straight lane with uneven spacing: its only costs are the near ends and the unevenness.
 TEST(ShapeCosts, AddUpOnALaneByHand) {
     const Scene lane = cones_at({{2, 2}, {4, 2}, {7, 2}, {2, -2}, {4, -2}, {7, -2}});
-    RldParameters parameters;
-    parameters.lane_width_m = 4.0;
-    parameters.d_t = 2.0;
+    RldParameters parameters{.d_t = 2.0, .lane_width_m = 4.0};
     parameters.w_s = parameters.w_t = parameters.w_p = parameters.w_b = 0.0;
     parameters.unevenness_weight = 3.0;
     parameters.near_end_weight = 0.5;
@@ -106,10 +101,7 @@ TEST(ShapeCosts, AddUpOnALaneByHand) {
 /// edge without a direction.
 TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
     Scene scene = tests::cones_at({{2.0, 0.0}, {2.0, 0.0}, {1.9, 0.5}, {2.1, 0.5}});
-    RldParameters parameters;
-    parameters.facing_weight = 1.0;
-    parameters.lane_width_m = 0.5;
-    parameters.d_e = 0.2;
+    RldParameters parameters{.d_e = 0.2, .facing_weight = 1.0, .lane_width_m = 0.5};
     parameters.facing_distance_m = parameters.facing_length_m = 2.0;
     const LaneGraphProblem problem = make_problem(scene, parameters, EdgeExtent::all_pairs);
     ASSERT_EQ(problem.edges.front().j, 1U);
@@ -118,8 +110,7 @@ TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
 
 TEST(ShapeCosts, ComeByHandWhereThereAreNone) {
     EXPECT_TRUE(has_shape_costs(with_shape_costs({})));
-    RldParameters own;
-    own.facing_weight = 0.3;
+    RldParameters own{.facing_weight = 0.3};
     const RldParameters same = with_shape_costs(own);
     EXPECT_EQ(same.facing_weight, 0.3);
     EXPECT_EQ(same.unevenness_weight, 0.0);
@@ -134,10 +125,8 @@ TEST(ShapeCosts, AreThoseOfTheIndependentChecker) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 9);
-        RldParameters parameters;
-        parameters.unevenness_weight = 0.7;
-        parameters.facing_weight = 1.3;
-        parameters.near_end_weight = seed % 2 == 0 ? 0.9 : 4.0;
+        RldParameters parameters{
+            .unevenness_weight = 0.7, .facing_weight = 1.3, .near_end_weight = seed % 2 == 0 ? 0.9 : 4.0};
         const LaneGraphProblem all = make_problem(scene, parameters, EdgeExtent::all_pairs);
         tests::expect_edge_costs_confirmed(all, scene, parameters);
         const LaneGraphProblem problem = make_problem(scene, parameters);

@@ -3,6 +3,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
+#include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
@@ -155,8 +156,7 @@ TEST_P(SolverContract, AgreesWithEveryPairOfPathsOnRandomScenes) {
     EXPECT_GT(counts.lanes, 60);
 }
 
-/// A lane whose edges face each other in part only: moved by a quarter of the spacing, they exclude each
-/// other.
+/// A lane whose edges face each other in part only: moved by a quarter of the spacing, they exclude others.
 TEST_P(SolverContract, EdgesThatAreTooCloseExcludeEachOther) {
     const RldReport shifted = solve(cones_at({{1, 1}, {4.2, 1}, {7.4, 1}, {1.8, -1}, {5.0, -1}, {8.2, -1}}));
     if (shifted.status == SolveStatus::optimal) {
@@ -168,8 +168,7 @@ TEST_P(SolverContract, EdgesThatAreTooCloseExcludeEachOther) {
 
 /// The left boundary continues to either of two cones at the same cost: both answers are right.
 TEST_P(SolverContract, EquallyGoodLanesTie) {
-    RldParameters parameters;
-    parameters.w_p = 0.0;
+    RldParameters parameters{.w_p = 0.0};
     const Scene scene =
         cones_at({{4, 1.5}, {7.2, 1.5}, {10.3, 2.3}, {10.3, 0.7}, {4, -2.5}, {7.2, -2.5}, {10.4, -2.5}});
     const double length = std::hypot(3.1, 0.8);
@@ -237,10 +236,7 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
 TEST_P(SolverContract, CrossingEdgesAreForbiddenOnRequest) {
     // Edges across have the expected spacing; straight ones are too short to be allowed.
     const Scene scene = cones_at({{4, 1.0}, {6.5, 1.0}, {4, -1.0}, {6.5, -1.0}});
-    RldParameters parameters;
-    parameters.d_min = 0.0;
-    parameters.s_crit = 1e-4;
-    parameters.w_p = 0.0;
+    RldParameters parameters{.w_p = 0.0, .d_min = 0.0, .s_crit = 1e-4};
     const RldReport crosswise = solve(scene, parameters);
     ASSERT_EQ(crosswise.status, SolveStatus::optimal) << crosswise.message;
     const LaneGraph expected{{{0, 3}, {1, 2}}};
@@ -257,8 +253,7 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene_now = tests::random_scene(seed, 6 + seed % 4);
-        RldParameters parameters;
-        parameters.pairing = seed % 4 == 3 ? Pairing::paper : Pairing::near_far;
+        RldParameters parameters{.pairing = seed % 4 == 3 ? Pairing::paper : Pairing::near_far};
         const RldReport cold = solve(scene_now, parameters);
         const std::vector<LaneGraph> strange{{{{0, 1}}}, {}, {{{0, 1}, {2, 30}}}, {{{0, 1}, {0, 2}, {1, 2}}}};
         const RldReport dropped = solve(scene_now, parameters, {}, &strange[seed % strange.size()]);
@@ -275,6 +270,34 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
         }
     }
     EXPECT_GT(started, 20);
+}
+
+/// With all rows from the first, one solve is enough, also where a cycle or a path between near ends pays.
+TEST(AllRows, OneSolveOfOneProgramGivesTheOptimum) {
+    RldParameters parameters;
+    parameters.w_b = 3.0;
+    parameters.w_t = 0.02;
+    parameters.t_crit = 1000.0;
+    parameters.d_min = 0.5;
+    parameters.d_near = 8.0;
+    for (const MilpBackend& backend : milp_backends()) {
+        const auto load = [&](const BinaryProgram& program, std::uint64_t) { return backend.load(program); };
+        const auto whole = make_milp_rld_solver(load, {.all_rows = true});
+        const auto on_demand = make_milp_rld_solver(load, {});
+        int rounds = 0;
+        for (std::uint64_t seed = 0; seed < 12; ++seed) {
+            SCOPED_TRACE(testing::Message() << backend.entry.name << ", seed " << seed);
+            parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+            const Scene scene = tests::random_scene(seed, 8);
+            const LaneGraphProblem problem = make_problem(scene, parameters);
+            const RldReport report = whole->solve(problem, {});
+            EXPECT_LE(report.rounds, 1);
+            rounds = std::max(rounds, on_demand->solve(problem, {}).rounds);
+            if (!tests::agrees(report, make_exhaustive_solver()->solve(problem, {}))) continue;
+            tests::expect_confirmed(report, scene, parameters);
+        }
+        EXPECT_GT(rounds, 1) << "no answer violates a row, so the test says nothing";
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(exact_solver_cases()),

@@ -1,5 +1,4 @@
-// Effects of a solve on its process: SIGINT still belongs to the program, and no library's assertion ends the
-// process.
+// Effects of a solve on its process: SIGINT is the program's, and no library's assertion ends the process.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "model/formulation_parts.hpp"
@@ -87,9 +86,7 @@ TEST(OwnProcess, ReportsHowItEnded) {
     const auto message = [](const std::function<void()>& fate) {
         const MilpReport report = detail::in_own_process([&] {
             fate();
-            MilpReport unharmed;
-            unharmed.status = SolveStatus::optimal;
-            return unharmed;
+            return MilpReport{.status = SolveStatus::optimal};
         });
         EXPECT_EQ(report.status, SolveStatus::error);
         EXPECT_TRUE(report.point.empty());
@@ -107,12 +104,11 @@ TEST(OwnProcess, ReportsHowItEnded) {
 }
 
 TEST(OwnProcess, GivesTheWholeReport) {
-    MilpReport wanted;
-    wanted.status = SolveStatus::feasible;
-    wanted.stopped_by = StopReason::time;
-    wanted.bound = -2.5;
-    wanted.nodes = 7;
-    wanted.message = "late";
+    MilpReport wanted{.status = SolveStatus::feasible,
+                      .stopped_by = StopReason::time,
+                      .bound = -2.5,
+                      .nodes = 7,
+                      .message = "late"};
     wanted.point.assign(100'000, 0.25);  // more than a pipe holds
     const MilpReport report = detail::in_own_process([&] {
         std::fputs("a warning\n", stderr);
@@ -139,9 +135,8 @@ TEST(CbcMain, SolvesWhatTheFeasibilityPumpAbortedOn) {
         {29.108, -2.9807},       {22.0263, 11.9073}};
     Scene scene;
     scene.pose = {{13.466225, -0.437298}, -0.04135656};
-    for (const auto& [x, y] : kCones) {
+    for (const auto& [x, y] : kCones)
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
-    }
     const LaneGraphProblem problem = make_problem(scene, {});
     const RldReport reference = find_rld_solver("path-pair")->make(Formulation::tight)->solve(problem, {});
     const std::unique_ptr<RldSolver> solver = find_rld_solver("cbc-main")->make(Formulation::tight);

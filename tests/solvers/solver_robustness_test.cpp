@@ -170,25 +170,22 @@ TEST_P(SolverRobustness, AStartOutlivesTheLimit) {
     EXPECT_NEAR(report.objective.value_or(0.0), -2.0, 1e-9);
 }
 
-/// One instance in each thread: they share no state that matters. Libraries that cannot run in parallel take
-/// turns.
+/// One instance in each thread: they share no state that matters. Some libraries have to take turns.
 TEST_P(SolverRobustness, SolvesTheSameInThreads) {
     constexpr std::uint64_t kSeeds = 4;
     const auto solve_all = [] {
         const std::unique_ptr<RldSolver> own = GetParam().entry->make(GetParam().formulation);
         std::vector<RldReport> reports;
-        for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+        for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
             reports.push_back(own->solve(make_problem(tests::random_scene(seed, 8), {}, own->extent()), {}));
-        }
         return reports;
     };
     const std::vector<RldReport> alone = solve_all();
     std::vector<std::vector<RldReport>> together(3);
     {
         std::vector<std::jthread> threads;
-        for (std::vector<RldReport>& reports : together) {
+        for (std::vector<RldReport>& reports : together)
             threads.emplace_back([&reports, &solve_all] { reports = solve_all(); });
-        }
     }
     for (const std::vector<RldReport>& reports : together) {
         ASSERT_EQ(reports.size(), alone.size());
@@ -242,7 +239,7 @@ TEST(FailingBackend, IsAnErrorWithAMessageThatKeepsAFeasibleStart) {
     for (const Way way : {Way::load_throws, Way::throws, Way::throws_no_std_exception, Way::reports,
                           Way::gives_a_wrong_point}) {
         SCOPED_TRACE(static_cast<int>(way));
-        const auto solver = make_milp_rld_solver(FailingMilpSolver(way), Formulation::tight);
+        const auto solver = make_milp_rld_solver(FailingMilpSolver(way), {});
         const RldReport alone = solver->solve(problem, {});
         EXPECT_EQ(alone.status, SolveStatus::error);
         EXPECT_FALSE(alone.message.empty());

@@ -1,7 +1,7 @@
 # cmake -D ROOT=DIR -P includes.cmake: checks the #include lines of the sources below ROOT.
 # - Quoted includes name folder and file, and the folder is one that the including folder may depend on. A public header
 #   is "conelane/FILE", of the folder that has it below include/; it includes public headers only.
-# - Inside solvers/path_pair/, graph_search/, evaluation/, experiments/ and program/ a folder includes only itself and those
+# - Inside solvers/path_pair/, graph_search/, evaluation/, learning/, experiments/ and program/ a folder includes only itself and those
 #   before it in the list of layers.
 # - Headers of the installed libraries include no solver, Boost, parser or thread library: those stay in .cpp files,
 #   or in a header below a folder `detail`, which is private to its library.
@@ -15,20 +15,22 @@ set(solvers_depends_on model solvers)
 set(graph_search_depends_on model graph_search)
 set(detectors_depends_on model solvers graph_search detectors)
 set(evaluation_depends_on model solvers graph_search detectors evaluation)
-set(experiments_depends_on model solvers graph_search detectors evaluation experiments)
-set(program_depends_on model solvers graph_search detectors evaluation experiments program)
+set(learning_depends_on model solvers graph_search detectors evaluation learning)
+set(experiments_depends_on model solvers graph_search detectors evaluation learning experiments)
+set(program_depends_on model solvers graph_search detectors evaluation learning experiments program)
 set(python_depends_on model solvers graph_search detectors evaluation python)
 set(playground_depends_on model solvers graph_search detectors evaluation playground)
-set(tests_depends_on model solvers graph_search detectors evaluation experiments program tests)
+set(tests_depends_on model solvers graph_search detectors evaluation learning experiments program tests)
 # Each folder, and each file that stands beside folders, without its ending: what stands later may include what stands before.
 set(layers_of_solvers/path_pair search_clock path_pair_options graph bound primal frontier search path_pair_solver)
-set(layers_of_evaluation input_error seeded_random world formats scoring proofs outside)
-set(layers_of_experiments progress training tuning methods comparison options cross_check cross_validation instances
+set(layers_of_evaluation input_error seeded_random progress world formats scoring proofs outside)
+set(layers_of_learning training tuning)
+set(layers_of_experiments methods comparison options cross_check cross_validation instances
                           studies race report benchmarks examples)
 set(layers_of_program commands main)
-set(layered solvers/path_pair evaluation experiments program)
+set(layered solvers/path_pair evaluation learning experiments program)
 set(private_libraries
-    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|zlib|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|interfaces/highs|boost/|zlib|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 
 # The folder of each public header.
 file(GLOB_RECURSE public_headers RELATIVE ${ROOT} ${ROOT}/*/include/conelane/*.hpp ${ROOT}/*/*/include/conelane/*.hpp)
@@ -103,4 +105,4 @@ function(check_includes folder file)
         endif()
     endforeach()
 endfunction()
-check_sources(check_includes model solvers graph_search detectors evaluation experiments program python playground tests)
+check_sources(check_includes model solvers graph_search detectors evaluation learning experiments program python playground tests)

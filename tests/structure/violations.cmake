@@ -30,7 +30,7 @@ expect("model/a.hpp has no #pragma once" includes model/a.hpp "#include <vector>
 foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experiments" "solvers;graph_search"
                            "graph_search;solvers" "solvers;detectors" "graph_search;detectors"
                            "detectors;evaluation" "solvers;evaluation" "graph_search;evaluation" "evaluation;experiments"
-                           "experiments;program" "evaluation;program" "python;experiments" "experiments;tests"
+                           "experiments;program" "evaluation;program" "learning;experiments" "evaluation;learning" "python;experiments" "experiments;tests"
                            "experiments;python" "detectors;python" "python;tests"
                            "evaluation;playground" "playground;experiments" "playground;python")
     list(GET direction 0 from)
@@ -41,7 +41,7 @@ endforeach()
 # Layers: a second file to include, since one that is missing is a fault of its own.
 file(REMOVE_RECURSE ${SCRATCH})
 foreach(direction IN ITEMS "evaluation/world/track;evaluation/formats/scene" "evaluation/world/scene;evaluation/formats/text"
-                           "evaluation/seeded_random;evaluation/formats/text" "experiments/tuning/tuner;experiments/studies/study"
+                           "evaluation/seeded_random;evaluation/formats/text" "experiments/methods/method;experiments/studies/study" "learning/training/learner;learning/tuning/tuner"
                            "program/commands/command;program/main"
                            "solvers/path_pair/bound/multipliers;solvers/path_pair/search/branch_and_bound"
                            "solvers/path_pair/primal/incumbent;solvers/path_pair/frontier/graph")

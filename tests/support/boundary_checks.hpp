@@ -1,20 +1,15 @@
 #pragma once
 
 #include "model/geometry.hpp"
-
-#include <algorithm>
-#include <cstddef>
-#include <limits>
-#include <vector>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 
 /// The segments of a polyline in order, with the closing one where it is closed.
 inline std::vector<Segment> segments(const std::vector<Point>& vertices, bool closed) {
     std::vector<Segment> result;
-    for (std::size_t i = 0; i + (closed ? 0 : 1) < vertices.size(); ++i) {
+    for (std::size_t i = 0; i + (closed ? 0 : 1) < vertices.size(); ++i)
         result.push_back({vertices[i], vertices[(i + 1) % vertices.size()]});
-    }
     return result;
 }
 
@@ -34,9 +29,8 @@ inline bool is_simple(const std::vector<Point>& vertices, bool closed) {
 inline double clearance_m(const std::vector<Point>& a, const std::vector<Point>& b, bool closed) {
     double smallest_m = std::numeric_limits<double>::infinity();
     for (const Segment& one : segments(a, closed)) {
-        for (const Segment& other : segments(b, closed)) {
+        for (const Segment& other : segments(b, closed))
             smallest_m = std::min(smallest_m, segment_distance(one, other).distance_m);
-        }
     }
     return smallest_m;
 }

@@ -1,17 +1,13 @@
 #pragma once
 
 #include "conelane/detectors.hpp"
-
-#include <string>
-#include <vector>
+#include "tests/support/testing.hpp"
 
 namespace conelane::tests {
 
 /// The detectors of the library, for parameterised tests.
 inline std::vector<std::string> detector_names() {
-    std::vector<std::string> names;
-    for (const DetectorInfo& detector : detectors()) names.emplace_back(detector.name);
-    return names;
+    return mapped(detectors(), [](const DetectorInfo& detector) { return std::string(detector.name); });
 }
 
 }  // namespace conelane::tests

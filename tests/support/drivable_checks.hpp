@@ -77,8 +77,7 @@ inline void expect_drivable(const Course& course, const DrivableLane& lane, doub
         EXPECT_GE(lane.length_m, lane.points.back().s_m);
         EXPECT_LT(lane.length_m, lane.points.back().s_m + step_m);
     }
-    std::vector<Point> line;
-    for (const DrivablePoint& point : lane.points) line.push_back(point.position);
+    const std::vector<Point> line = mapped(lane.points, &DrivablePoint::position);
     for (std::size_t i = 0; i < line.size(); ++i) {
         const DrivablePoint& point = lane.points[i];
         EXPECT_NEAR(point.s_m, static_cast<double>(i) * spacing_m, 1e-9 * (1.0 + point.s_m));

@@ -1,13 +1,9 @@
 #pragma once
 
 #include "conelane/drivable_lane.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <numbers>
 #include <random>
-#include <vector>
 
 namespace conelane::tests {
 
@@ -26,11 +22,8 @@ struct Course {
         scene.cones.push_back({.id = id, .position = position});
     }
     [[nodiscard]] std::vector<Point> boundary(const std::vector<ConeId>& ids) const {
-        std::vector<Point> result;
-        for (const ConeId id : ids) {
-            result.push_back(std::ranges::find(scene.cones, id, &Cone::id)->position);
-        }
-        return result;
+        return mapped(
+            ids, [&](const ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; });
     }
     [[nodiscard]] std::vector<Point> left() const { return boundary(lane.left); }
     [[nodiscard]] std::vector<Point> right() const { return boundary(lane.right); }

@@ -2,12 +2,8 @@
 
 #include "conelane/scene.hpp"
 #include "graph_search/front/front_cost.hpp"
+#include "tests/support/testing.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 
 namespace conelane::tests {

@@ -3,11 +3,7 @@
 #include "graph_search/clc/lane_constraints.hpp"
 #include "graph_search/clc/lane_width.hpp"
 #include "model/geometry.hpp"
-
-#include <algorithm>
-#include <cstddef>
-#include <span>
-#include <vector>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 

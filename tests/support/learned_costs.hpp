@@ -1,14 +1,7 @@
 #pragma once
 
 #include "conelane/learned_costs.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
+#include "tests/support/testing.hpp"
 
 namespace conelane::tests {
 

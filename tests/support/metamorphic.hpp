@@ -2,19 +2,10 @@
 
 #include "conelane/lane.hpp"
 #include "conelane/scene.hpp"
+#include "tests/support/testing.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <functional>
 #include <ostream>
-#include <string_view>
-#include <utility>
-#include <vector>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
 
 namespace conelane::tests {
 

@@ -6,8 +6,7 @@
 #include <ostream>
 #include <type_traits>
 
-/// How GoogleTest prints values of the library, which would be bytes. It is in the precompiled header of the
-/// tests.
+/// How GoogleTest prints values of the library, which would be bytes; in the precompiled header of the tests.
 namespace conelane {
 
 template <typename Named>

@@ -22,9 +22,7 @@ inline constexpr const char* kScene =
 
 /// Lanes files are equal, except for the times.
 inline std::vector<Lane> lanes_in(const std::filesystem::path& file) {
-    std::vector<Lane> lanes;
-    for (const LaneRecord& record : read_lanes(file)) lanes.push_back(record.answer.lane);
-    return lanes;
+    return mapped(read_lanes(file), [](const LaneRecord& record) { return record.answer.lane; });
 }
 
 }  // namespace conelane

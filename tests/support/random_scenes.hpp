@@ -1,13 +1,7 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-
-#include <cmath>
-#include <cstdint>
-
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
+#include "tests/support/testing.hpp"
 
 namespace conelane::tests {
 

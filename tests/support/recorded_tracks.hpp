@@ -2,17 +2,11 @@
 
 #include "evaluation/formats/track_spec.hpp"
 #include "tests/support/test_paths.hpp"
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <vector>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 
-/// The folder in the environment variable CONELANE_DATA, else ../shared/data beside the sources; it may not
-/// exist.
+/// The folder in the environment variable CONELANE_DATA, else ../shared/data beside the sources, if any.
 inline std::filesystem::path recorded_data() {
     const char* const given = std::getenv("CONELANE_DATA");
     if (given != nullptr) return given;

@@ -6,8 +6,7 @@
 
 namespace conelane::tests {
 
-/// An open lane straight on from `begin` along `heading_rad`, 1.75 m wide to either side, a point every 0.5
-/// m.
+/// An open lane straight on from `begin` along `heading_rad`, 1.75 m wide to either side, in steps of 0.5 m.
 inline DrivableLane straight_line(const Point& begin, double heading_rad, double length_m) {
     constexpr double kStep_m = 0.5;
     DrivableLane lane;

@@ -2,10 +2,7 @@
 
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/world/annotated_scene.hpp"
-
-#include <cstddef>
-#include <optional>
-#include <utility>
+#include "tests/support/testing.hpp"
 
 namespace conelane {
 
@@ -32,10 +29,7 @@ inline AnnotatedScene straight_scene(double width_m = 3.5) {
 inline const TrackBoundaries kTrack{{{-20, 1.75}, {80, 1.75}}, {{-20, -1.75}, {80, -1.75}}, false};
 
 inline LaneAnswer found(Lane lane) {
-    LaneAnswer answer;
-    answer.status = LaneStatus::found;
-    answer.lane = std::move(lane);
-    return answer;
+    return LaneAnswer{.status = LaneStatus::found, .lane = std::move(lane)};
 }
 
 inline SceneScore scored(const AnnotatedScene& scene, const Lane& lane) {

@@ -24,8 +24,7 @@ inline Track straight(double left_end = 95.0, double right_end = 95.0) {
     return track;
 }
 
-/// A closed course around (0, 0), driven counter-clockwise: 12 cones a side, at radius 8.5 m (left) and 11.5
-/// m.
+/// A closed course around (0, 0), driven counter-clockwise: 12 cones a side, radius 8.5 m left, 11.5 m right.
 inline Track circle() {
     Track track{"circle", {}, {}, {}, true};
     for (int i = 0; i < 12; ++i) {
@@ -40,10 +39,7 @@ inline Track circle() {
 }
 
 inline SceneOptions options(std::vector<double> rates, std::vector<double> ranges_m) {
-    SceneOptions result;
-    result.false_positive_rates = std::move(rates);
-    result.ranges_m = std::move(ranges_m);
-    return result;
+    return SceneOptions{.false_positive_rates = std::move(rates), .ranges_m = std::move(ranges_m)};
 }
 
 inline SceneOptions in_conditions(std::vector<std::string> names, double rate = 0.0) {
@@ -63,9 +59,7 @@ inline const Cone& cone_of(const AnnotatedScene& scene, ConeId id) {
 
 /// x of the cones of a run, which tells cones of a straight boundary apart.
 inline std::vector<double> xs(const AnnotatedScene& scene, const std::vector<ConeId>& run) {
-    std::vector<double> result;
-    for (const ConeId id : run) result.push_back(cone_of(scene, id).position.x());
-    return result;
+    return mapped(run, [&](const ConeId id) { return cone_of(scene, id).position.x(); });
 }
 
 /// The bytes of a scenes file.

@@ -36,9 +36,8 @@ std::vector<Scene> random_scenes(std::size_t cones) {
 }
 
 std::vector<Lane> lanes(LaneDetector& detector, const std::vector<Scene>& scenes) {
-    std::vector<Lane> found;
-    for (const Scene& scene : scenes) found.push_back(detector.detect(scene, tests::kNoTimeLimit).lane);
-    return found;
+    return mapped(scenes,
+                  [&](const Scene& scene) { return detector.detect(scene, tests::kNoTimeLimit).lane; });
 }
 
 /// The lane along the `count` nearest cones of a straight scene, which all threads share.

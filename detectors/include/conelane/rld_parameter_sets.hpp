@@ -10,7 +10,7 @@ namespace conelane {
 
 /// Tuned parameters that are part of the library:
 /// - `context`: accuracy of lanes of the 12 nearest cones, found among 24 (the detector rld-context),
-/// - `shape`: the same with the costs of the lane's shape (rld-shape-context),
+/// - `shape`: the same with the costs of the lane's shape (rld-context),
 /// - `n12`: accuracy of lanes found among the 12 nearest cones,
 /// - `full`: IoU of lanes found among all visible cones at 30 m,
 /// - `learned`: lanes of all visible cones, by learned costs alone (the detector rld-learned); its weights

@@ -238,9 +238,8 @@ _KINDS = {"exec": "program", "lanes": "lanes file", "solver": "RLD by a solver"}
 def outside(results, published):
     """Methods from outside
     Claim: Which of these methods are not this project's, and how do their authors describe them?
-    Protocol: a program answers scene by scene through a pipe; its latency is the whole round trip; that of an echo
-    program is shown for comparison. Self-timed: the time that the method itself reports. All latencies of a finished lanes
-    file are self-timed. The other columns are from the method's own card.
+    Protocol: a program answers scene by scene through a pipe; its latency is the whole round trip.
+    Self-timed: the time that the method itself reports. All latencies of a finished lanes file are self-timed. The other columns are from the method's own card.
     Source: this project; the cards are their authors'.
     Command: conelane compare --methods exec:NAME=COMMAND,lanes:NAME=FILE --out RESULTS"""
     rows = list({row["method"]: row for row in reversed(results.rows) if "outside" in row}.values())[::-1]
@@ -261,8 +260,7 @@ def outside(results, published):
         *(of_card(key, key) for key in ("name", "address", "licence")), of_card("uses colour", "colour_used", yes_or_no),
         of_card("uses history", "history_used", yes_or_no),
         of_card("trained on", "training_courses", lambda courses: ", ".join(map(str, courses)) or "none"),
-        time("self-timed median ms", "self_timed_ms", "median"), time("self-timed p95 ms", "self_timed_ms", "p95"),
-        time("echo median ms", "echo_floor_ms", "median")], rows, note="Times: of the first condition, rate and range of each.")
+        time("self-timed median ms", "self_timed_ms", "median"), time("self-timed p95 ms", "self_timed_ms", "p95")], rows, note="Times: of the first condition, rate and range of each.")
 
 
 @Experiment

@@ -1,15 +1,13 @@
 """What exact search gives, and what it costs."""
 
-import re
-
 import numpy as np
 
 from .. import measures
 from ..charts import by_rate, chart, drawn, group, series
 from ..experiment import Experiment
 from ..load import SUCCESSES, Missing
-from ..records import NUMBER, TEXT, WHOLE, YES_OR_NO, InputError, read_json
-from ..summaries import is_close, median, percent_label, quantile
+from ..records import NUMBER, TEXT, WHOLE, YES_OR_NO
+from ..summaries import median, percent_label, quantile
 from ..tables import column, count, fixed, milliseconds, percent, table, text
 from ..theme import percent_axis
 
@@ -138,37 +136,6 @@ def _of_values(key, statistic):
 
 
 @Experiment
-def anytime(results, published):
-    """What the exact search knows at its time limit
-    Claim: If the time is too short for a proof, there are a lane graph and a proven gap; both improve with time.
-    Protocol: `path-pair` on all cones of each scene, solved again under each limit, one thread. Gap: from the bound to the
-    best lane graph known under any limit, divided by the larger of 1 and its cost's size; 0 if the optimum is proven.
-    Close: a lane graph whose cost is within 1 % of that one's.
-    Source: this project.
-    Command: conelane study anytime --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/anytime.jsonl"""
-    rows = results.stored("anytime.jsonl", {"scene": TEXT, "limit_ms": NUMBER, "proven": YES_OR_NO})
-    origin, by_limit = results.origin(rows[0]).strip(), _grouped(rows, lambda row: row["limit_ms"])
-    first = min(by_limit)
-    shares = _curves(by_limit, ("proven", lambda rows: 100.0 * np.mean([row["proven"] for row in rows])),
-                     ("lane graph within 1 %", lambda rows: 100.0 * np.mean(list(map(is_close, rows)))),
-                     xlabel="limit [ms]", ylabel="scenes [%]", log="x", scale=percent_axis)
-    # Scenes that are not solved within the first limit: the same scenes at every limit.
-    hard = {row["scene"] for row in by_limit[first] if not row["proven"]}
-
-    def within(share):
-        def gap(rows):
-            found = [100.0 * row.get("gap", np.inf) for row in rows if row["scene"] in hard]
-            return quantile(found, share / 100) if found else 0.0
-        return f"{share} % of them at most", gap
-    gaps = _curves(by_limit, *map(within, (50, 75, 90)), xlabel="limit [ms]", ylabel="proven gap [%]", log="x", ylim=(0.0, None))
-    return group([
-        drawn("anytime-shares", "Where a curve is level, more time proves nothing more. Share of "
-              f"{len(by_limit[first])} scenes, by the limit. {origin}".strip(), shares, "Proven, and nearly best"),
-        drawn("anytime-gap", "The faster a curve falls, the better the first answers are. For the "
-              f"{len(hard)} scenes that are not solved within {first:g} ms. {origin}".strip(), gaps, "Gap against time")])
-
-
-@Experiment
 def growth(results, published):
     """How the cost of the exact search grows
     Claim: Time grows mildly with the cones and steeply with their density.
@@ -194,87 +161,40 @@ def growth(results, published):
     return group(figures)
 
 
-def study_table(name, file, kinds, columns):
-    """A table of what a study stored; its columns are of keys of the rows."""
-    def show(results, published):
-        rows = results.stored(file, kinds)
-        return table(name, columns, rows, note=results.origin(rows[0]).strip())
-    return show
-
-
-_FEW_KINDS = {"cones": WHOLE, "solver": TEXT, "scenes": WHOLE, "optimal": WHOLE, "median_ms": NUMBER, "p95_ms": NUMBER}
-
-formulations = Experiment(study_table(
-    "formulations", "formulations.jsonl", {"cones": WHOLE, "formulation": TEXT, "infeasible": WHOLE, "columns": NUMBER, "rows": NUMBER,
-                                           "mean_nodes": NUMBER, "median_build_ms": NUMBER} | _FEW_KINDS,
-    [column("n", count, "cones"), column("formulation", text, "formulation"), column("solver", text, "solver"),
-     column("scenes", count, "scenes"), column("proven %", percent, lambda row: (row["optimal"] + row["infeasible"]) / row["scenes"]),
-     column("columns", fixed, "columns", digits=0), column("rows", fixed, "rows", digits=0), column("LP gap, median %", percent, "median_gap"),
-     column("LP gap, mean %", percent, "mean_gap"), column("nodes", fixed, "mean_nodes"), column("build ms", milliseconds, "median_build_ms"),
-     column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms")]), about="""Formulations
+@Experiment
+def formulations(results, published):
+    """Formulations
     Claim: Both formulations have the same optimum; the tight one has the stronger relaxation and is solved faster.
     Protocol: the n nearest cones of each scene with at least n cones; the tight formulation by `cbc`, the printed one by
     `cbc-main`, each the faster of the two on it; one thread, building included. LP gap: (optimum - relaxation) divided
     by the larger of 1 and the optimum's size. A difference in optima above 1e-6 would have stopped the run.
     Source: this project; the printed rows are those of the RLD paper, III.
-    Command: conelane study formulations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/formulations.jsonl""")
+    Command: conelane study formulations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/formulations.jsonl"""
+    rows = results.stored("formulations.jsonl", dict.fromkeys(("formulation", "solver"), TEXT) | dict.fromkeys(
+        ("cones", "scenes", "optimal", "infeasible"), WHOLE) | dict.fromkeys(
+        ("columns", "rows", "mean_nodes", "median_build_ms", "median_ms", "p95_ms"), NUMBER))
+    return table("formulations", [
+        column("n", count, "cones"), column("formulation", text, "formulation"), column("solver", text, "solver"),
+        column("scenes", count, "scenes"), column("proven %", percent, lambda row: (row["optimal"] + row["infeasible"]) / row["scenes"]),
+        column("columns", fixed, "columns", digits=0), column("rows", fixed, "rows", digits=0), column("LP gap, median %", percent, "median_gap"),
+        column("LP gap, mean %", percent, "mean_gap"), column("nodes", fixed, "mean_nodes"), column("build ms", milliseconds, "median_build_ms"),
+        column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms")], rows, note=results.origin(rows[0]).strip())
 
-relaxations = Experiment(study_table(
-    "relaxations", "relaxations.jsonl", _FEW_KINDS | {"feasible": WHOLE, "answered": WHOLE, "accurate": NUMBER, "worst_ms": NUMBER},
-    [column("n", count, "cones"), column("solver", text, "solver"),
-     *(column(key, count, key) for key in ("scenes", "feasible", "answered", "optimal")),
-     column("mean gap %", percent, "mean_gap", digits=2), column("worst gap %", percent, "worst_gap"), column("accurate %", percent, "accurate"),
-     column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms"), column("max ms", milliseconds, "worst_ms")]),
-    about="""Relaxations
+
+@Experiment
+def relaxations(results, published):
+    """Relaxations
     Claim: Does relaxing the binary constraints decrease latency, and how much accuracy does it cost?
     Protocol: every solver that proves nothing, and `path-pair`, which gives the optimum, on the n nearest cones; one
     thread, the problem's making included. Gap: (objective - least cost) divided by the larger of 1 and the least cost's
     size, over the answered scenes. Accurate: the RLD paper's four checks, a solve without an answer counts as inaccurate.
     Source: this project; the question is the RLD paper's own, V.
-    Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl""")
-
-confidence_and_colour = Experiment(study_table(
-    "confidence-and-colour", "confidence-and-colour.jsonl",
-    {"known": TEXT, "false_positive_rate": NUMBER, "scenes": WHOLE, "accurate": NUMBER, "success": NUMBER, "weights?": (list,)},
-    [column("known", text, "known"), column("false positives %", percent, "false_positive_rate"), column("scenes", count, "scenes"),
-     column("accurate %", percent, "accurate"), column("success %", percent, "success"),
-     column("weight by fold", text, lambda row: ", ".join(f"{weight:g}" for weight in row.get("weights", ())) or None)]),
-    about="""Confidence and colour
-    Claim: How much more accurate is RLD with detection confidences, or with cone colours of which some are wrong?
-    Protocol: scenes and folds of a tuning whose parameters were fitted to geometry alone; the same scenes with simulated
-    confidences or colours. Each fold is measured on its held-out tracks; the weight of the additional data (w_b with
-    confidences, w_color with colours) is chosen on the other tracks. Accurate: the RLD paper's four checks
-    on the cone set; success: no lane that leaves the track within 20 m.
-    Source: this project; the question is the RLD paper's own, V.
-    Command: conelane study confidence-and-colour --record detectors/parameters/context.record.json --tracks TRACK...
-    --out RESULTS/confidence-and-colour.jsonl""")
-
-
-_BENCHMARKS = "benchmarks.json"
-_STAGES = ("problem", "build", "update")
-_MICROSECONDS = {"ns": 1e-3, "us": 1.0, "ms": 1e3, "s": 1e6}
-
-
-@Experiment
-def update_or_rebuild(results, published):
-    """Update against rebuild
-    Claim: A program built at start and updated before each solve, as the RLD paper does it, saves building it.
-    Protocol: Google Benchmark; the scenes take turns. Problem: the numbers of a scene. Build: a new program from
-    them. Update: the same program with the new numbers.
-    Source: this project; the RLD paper, III, builds its model at program start.
-    Command: conelane_benchmarks --benchmark_filter=problem/|build/|update/ --benchmark_out_format=json
-    --benchmark_out=RESULTS/benchmarks.json"""
-    path, times = results.path_of(_BENCHMARKS), {}
-    try:
-        for run in read_json(path)["benchmarks"]:
-            found = re.fullmatch(rf"({'|'.join(_STAGES)})/(\w+)/(\d+)", run["name"])
-            if found and not run.get("error_occurred"):
-                times.setdefault((int(found[3]), found[2]), {})[found[1]] = run["cpu_time"] * _MICROSECONDS[run["time_unit"]]
-    except (KeyError, TypeError) as error:
-        raise InputError(f"{path}: no output of Google Benchmark ({error})") from None
-    rows = [{"n": size, "formulation": formulation} | stages for (size, formulation), stages in sorted(times.items()) if len(stages) == len(_STAGES)]
-    if not rows:
-        raise Missing(f"{_BENCHMARKS} has no stage of model building.")
-    return table("update-or-rebuild", [
-        column("n", count, "n"), column("formulation", text, "formulation"), *(column(f"{stage} µs", fixed, stage) for stage in _STAGES),
-        column("build / update", fixed, lambda row: row["build"] / row["update"])], rows)
+    Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl"""
+    rows = results.stored("relaxations.jsonl", {"solver": TEXT} | dict.fromkeys(("cones", "scenes", "feasible", "answered", "optimal"), WHOLE) |
+                          dict.fromkeys(("accurate", "median_ms", "p95_ms", "worst_ms"), NUMBER))
+    return table("relaxations", [
+        column("n", count, "cones"), column("solver", text, "solver"),
+        *(column(key, count, key) for key in ("scenes", "feasible", "answered", "optimal")),
+        column("mean gap %", percent, "mean_gap", digits=2), column("worst gap %", percent, "worst_gap"), column("accurate %", percent, "accurate"),
+        column("median ms", milliseconds, "median_ms"), column("p95 ms", milliseconds, "p95_ms"), column("max ms", milliseconds, "worst_ms")],
+        rows, note=results.origin(rows[0]).strip())

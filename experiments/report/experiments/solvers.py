@@ -3,17 +3,17 @@
 import numpy as np
 
 from .. import measures
-from ..charts import chart, drawn, group, series
+from ..charts import THIN, Curve, chart, drawn, group, series
 from ..experiment import Experiment
 from ..load import Missing, Sample
 from ..records import NUMBER, TEXT, WHOLE
-from ..summaries import median, quantile
+from ..summaries import quantile
 from ..tables import Cell, Column, column, count, fixed, milliseconds, percent, short, table, text
-from ..theme import series_style
-from .speed import profile_figure, ratio
+from ..theme import MARKERS, SURFACE, series_style
+from .speed import ratio
 
 FILE = "backends.jsonl"
-_WARM = " warm"
+_WARM, _ALL_ROWS = " warm", " whole"
 _SOLVE = {"scene": TEXT, "track": TEXT, "nearest": WHOLE, "backend": TEXT, "status": TEXT, "nodes": WHOLE, "latency_ms": NUMBER}
 
 
@@ -47,47 +47,46 @@ def _size(row, *more):
     return Cell(" ".join((_size_name(row["nearest"]), *more)).strip(), row["nearest"] or 10**6)
 
 
+def times_figure(results):
+    """Median and p95 of the time to a proven optimum by number of cones, for each engine, with rows on demand or all, whichever proves more and is
+    faster at that size; and the time of CLC on the same cone sets. A curve ends where fewer scenes are proven."""
+    solves = [one for one in _read(results)[0] if not one.method.endswith(_WARM)]
+    sizes = sorted({one.nearest for one in solves}, key=lambda nearest: nearest or np.inf)
+    of_engine = {}
+    for one in solves:
+        of_size = of_engine.setdefault(one.method.removesuffix(_ALL_ROWS), {})
+        times = np.where(one.is_decided, one.latency, np.inf)
+        of_size[one.nearest] = min(of_size.get(one.nearest, times), times, key=lambda times: (np.mean(np.isinf(times)), quantile(times, 0.5)))
+    scenes = {nearest: np.concatenate([one.scene for one in solves if one.nearest == nearest]) for nearest in sizes}
+    for sample in results.beside["sweep"]:
+        common = np.isin(sample.scene, scenes.get(sample.nearest or 0, []))
+        if sample.method == "clc" and np.any(common):
+            of_engine.setdefault("clc, a graph search without proof", {})[sample.nearest or 0] = sample.latency[common]
+    curves = []
+    for index, (engine, times) in enumerate(of_engine.items()):
+        marker = {"marker": MARKERS[index % len(MARKERS)]} | ({"markerfacecolor": SURFACE} if index >= len(MARKERS) else {})  # then hollow
+        for share, label, style in ((0.5, engine, {}), (0.95, "", THIN)):
+            points = [(place, quantile(times[nearest], share)) for place, nearest in enumerate(sizes) if nearest in times]
+            if any(np.isfinite(time) for _, time in points):  # a gap where it is not known
+                curves.append(Curve(label, np.where(np.isfinite(points), points, np.nan), series_style(index) | marker | style))
+    figure, axes = chart(curves, "nearest cones in the set", "time [ms], thin: p95", height=2.9 + 0.19 * len(of_engine), log="y")
+    axes.set_xticks(range(len(sizes)), [_size_name(nearest) for nearest in sizes])
+    return figure, axes
+
+
+def first_figure(results):
+    """What the page begins with, where there are solves."""
+    try:
+        return drawn("engine-times", "Only a curve that goes on to the right proves nearly all scenes. Strong curves: the median, failures above all "
+                     "times. Thin curves: p95.", times_figure(results), "Time to a proven optimum by number of cones")
+    except Missing:
+        return ""
+
+
 def _proven(one):
     """The proven optima by scene; infinite where it is proven that there is no lane graph."""
     return {scene: objective if status == "optimal" else np.inf
             for scene, status, objective in zip(one.scene[one.is_decided], one.status[one.is_decided], one.objective[one.is_decided])}
-
-
-@Experiment
-def exact_backends(results, published):
-    """Exact backends
-    Claim: All exact solvers have the same optimum; they differ in time.
-    Protocol: every backend on the same cone sets of the same scenes, one thread, pinned; the time is from the scene in
-    memory to the lane graph in memory, the program's building included. Every lane graph passes the independent checker
-    or counts as an error. Time-outs count in every figure with the time that they took.
-    Source: this project; the RLD paper runs Mosek on the printed formulation.
-    Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
-    Command: conelane study backends --sizes 12,20,30,60,all --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl"""
-    solves, origin = _read(results)
-    cold = [one for one in solves if not one.method.endswith(_WARM)]
-    figures, agreement = [], []
-    for size in dict.fromkeys(one.nearest for one in cold):
-        of_size = [one for one in cold if one.nearest == size]
-        agreement.append("n = {}: {} of {} scenes".format(_size_name(size), *measures.disagreements(map(_proven, of_size))))
-        figure, scenes = profile_figure(of_size, lambda i, _: series_style(i), lambda one: one.is_decided, "method")
-        if len(of_size) > 1 and figure:
-            figures.append(drawn(f"backends-profile-{_size_name(size)}", "The upper left curve is the fastest backend on most scenes. Share of "
-                                 f"{scenes} scenes proven (optimum or no lane) within a multiple of the fastest backend's time.", figure,
-                                 f"n = {_size_name(size)}"))
-
-    def time(title, of, **options):
-        return column(title, milliseconds, lambda one: of(one.latency), **options)
-    return group(figures) + table("backends", [
-        Column("n", lambda one: _size({"nearest": one.nearest})), column("backend", text, lambda one: one.method),
-        column("scenes", count, lambda one: len(one)), column("proven %", percent, lambda one: one.is_decided.mean()),
-        column("errors", count, lambda one: int(np.sum(one.status == "error"))),
-        time("median ms", median, interval=lambda one: measures.median_interval(one.latency, one.track)), time("mean ms", np.mean),
-        time("standard deviation ms", lambda latency: latency.std(ddof=1) if len(latency) > 1 else 0.0),
-        time("geometric mean ms", measures.shifted_geometric_mean), time("p95 ms", lambda latency: quantile(latency, 0.95)),
-        time("p99 ms", lambda latency: quantile(latency, 0.99)), time("max ms", max),
-        column("nodes", fixed, lambda one: one.nodes.mean())], cold,
-        note=f"Backends prove different optima at {'; '.join(agreement)}. Small: 95 % "
-             f"interval, tracks resampled. Geometric mean: shifted by 1 ms.{origin}")
 
 
 @Experiment
@@ -119,9 +118,9 @@ def warm_start(results, published):
 
 
 _KINDS = {"summary": {"backend": TEXT, "profile": (list,)} | dict.fromkeys(
-              ("nearest", "runs", "solved", "errors", "geometric_ms", "par2_ms", "par10_ms", "common", "won"), NUMBER),
+              ("nearest", "runs", "solved", "errors", "geometric_ms", "par10_ms", "won"), NUMBER),
           "block": {"nearest": WHOLE, "backend": TEXT, "version": TEXT, "reference_ms": NUMBER},
-          "pair": {"nearest": WHOLE, "first": TEXT, "second": TEXT} | dict.fromkeys(("ratio", "scenes", "p_value", "corrected_p_value"), NUMBER),
+          "pair": {"nearest": WHOLE, "first": TEXT, "second": TEXT} | dict.fromkeys(("ratio", "p_value", "corrected_p_value"), NUMBER),
           "selection": {"nearest": WHOLE, "single_best": TEXT, "single_par10_ms": NUMBER, "virtual_par10_ms": NUMBER},
           "gap": {"nearest": WHOLE, "backend": TEXT, "time_ms": NUMBER, "mean_primal_gap": NUMBER, "mean_dual_gap": NUMBER}}
 
@@ -175,17 +174,21 @@ def _spread_of_reference(blocks):
 @Experiment
 def solver_measures(results, published):
     """Measures of solvers
-    Claim: Which solver is fastest overall, how steady is it, and what is gained by choosing a solver for each scene?
-    Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program. Solved: proven
-    within the limit, accepted by the checker, and refuted by no other backend. Geometric mean shifted by 1 ms, failures at the
-    limit. PAR 1, PAR 2 and PAR 10: mean time, failures at 1, 2 and 10 times the limit. By all: over the runs that every backend
-    solved. Variation: standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the
-    gap to the best lane graph known, over time. Memory: growth of the process; for a program from outside, all its
-    memory. Pairs: Wilcoxon's signed-rank test on a scene's geometric mean times, corrected by Holm. Definitions and sources:
-    docs/measures.md.
-    Source: this project.
+    Claim: All exact solvers have the same optimum. Which is fastest, how steady is it, and what is gained by choosing a solver for each scene?
+    Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program, one thread, pinned; the time is from the
+    scene in memory to the lane graph in memory, the program's building included. Solved: proven within the limit, accepted by the checker, and
+    refuted by no other backend. Errors: of all orders. Geometric mean shifted by 1 ms, failures at the limit. PAR 10: mean time, failures at 10
+    times the limit. Small: 95 % intervals, courses resampled. Adds: PAR 10 of the virtual best without this solver, less that with it. Variation:
+    standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the gap to the best lane graph known, over
+    time. Memory: growth of the process; for a program from outside, all its memory. Pairs: each solver and the reference, Wilcoxon's
+    signed-rank test on the means of courses, corrected by Holm. Definitions and sources: docs/measures.md.
+    Source: this project; the RLD paper runs Mosek on the printed formulation.
+    Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
     Command: conelane study backends --sizes 12,20,30,60,all --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out
     RESULTS/backends.jsonl"""
+    solves, origin = _read(results)
+    agreement = ["n = {}: {} of {} scenes".format(_size_name(size), *measures.disagreements(
+        _proven(one) for one in solves if one.nearest == size and not one.method.endswith(_WARM))) for size in dict.fromkeys(one.nearest for one in solves)]
     summaries, blocks, pairs, selections, gaps = (_of_kind(results, kind) for kind in _KINDS)
     if not summaries:
         raise Missing(f"there is no {FILE} with measures.")
@@ -193,20 +196,21 @@ def solver_measures(results, published):
     versions = dict.fromkeys(f"{block['backend']}: {block['version'] or 'version unknown'}" for block in blocks)
     parts = group([*_profiles(summaries), *_gaps(gaps)]) + table(
         "solver-measures", [
-            _GROUP, column("backend", text, "backend"), column("runs", count, "runs"),
+            _GROUP, column("backend", text, "backend"), column("scenes", count, "scenes"), column("runs", count, "runs"),
             column("solved %", percent, lambda row: row["solved"] / row["runs"]), column("errors", count, "errors"),
-            column("geometric mean ms", milliseconds, "geometric_ms"), column("PAR 1 ms", milliseconds, "par1_ms"),
-            column("PAR 2 ms", milliseconds, "par2_ms"), column("PAR 10 ms", milliseconds, "par10_ms"),
-            column("solved by all", count, "common"), column("geometric mean ms, by all", milliseconds, "common_geometric_ms"),
+            column("median ms", milliseconds, "median_ms"),
+            column("geometric mean ms", milliseconds, "geometric_ms", interval=lambda row: row.get("geometric_ms_interval")),
+            column("PAR 10 ms", milliseconds, "par10_ms", interval=lambda row: row.get("par10_ms_interval")),
             column("own time, median ms", milliseconds, "median_engine_ms"), column("variation %", percent, "variability"),
             column("max / min", fixed, "spread", digits=2), column("primal integral ms", milliseconds, "primal_integral_ms"),
             column("dual integral ms", milliseconds, "dual_integral_ms"), column("first", count, "won"),
+            column("adds to the virtual best, ms", milliseconds, "contribution_ms"),
             column("peak MiB", fixed, lambda row: peak.get((row["nearest"], row["backend"])))], summaries,
-        note=f"{_spread_of_reference(blocks)}{'; '.join(versions)}.")
+        note=f"Backends prove different optima at {'; '.join(agreement)}. {_spread_of_reference(blocks)}{'; '.join(versions)}.{origin}")
     if pairs:
         parts += table("solver-pairs", [
-            _GROUP, column("first", text, "first"), column("second", text, "second"), column("time ratio", short, "ratio"),
-            column("scenes that differ", count, "scenes"), column("p", short, "p_value", digits=2),
+            _GROUP, column("first", text, "first"), column("second", text, "second"), column("time ratio", short, "ratio", interval=lambda row: row.get("ratio_interval")),
+            column("courses that differ", count, "courses"), column("p", short, "p_value", digits=2),
             column("p, Holm", short, "corrected_p_value", digits=2)], pairs, caption="Pairs")
     return parts + table("solver-selection", [
         _GROUP, column("single best", text, "single_best"), column("PAR 10 ms", milliseconds, "single_par10_ms"),

@@ -1,6 +1,5 @@
 """Speed on the same cones, and races driven with the answers."""
 
-import json
 import os
 from html import escape
 
@@ -11,11 +10,12 @@ from ..charts import THIN, Curve, chart, drawn, group, series, time_rules, with_
 from ..experiment import Experiment
 from ..load import Missing
 from ..records import NUMBER, TEXT, WHOLE, YES_OR_NO, InputError, read_json, read_lines, require_all
+from ..replay import player
 from ..summaries import median, percent_label, quantile, race_measures
 from ..tables import Cell, Column, column, count, fixed, method_cell, milliseconds, percent, table, text
 from ..theme import method_style, percent_axis
 
-_MEASURES = {"usable": "usable", "accurate": "accurate", "success": "successful"}
+_MEASURES = {"accurate": "accurate", "solved": "proven", "usable": "usable"}  # few cones end before a lane is usable
 
 
 def of_methods(results):
@@ -60,7 +60,7 @@ def same_cone_set(results, published):
                      growth_figure(results), "Latency")]
     figures += [drawn(f"{name}-by-size", "High is good, and where a curve is level, more cones do not help. Error bars: 95 % intervals, tracks "
                       "resampled.", by_size(results, [(share(name), {})], f"{words} [%]", height=3.1, scale=percent_axis), words.capitalize())
-                for name, words in _MEASURES.items()]
+                for name, words in _MEASURES.items() if any(sample.has(name) for sample in results.sweep)]
     rows = []
     for size in sorted({sample.nearest for sample in results.sweep}):
         samples = [sample for sample in results.sweep if sample.nearest == size]
@@ -113,59 +113,6 @@ def paired_latency(results, published):
         column("scenes of both", count, lambda row: row["ratio"][2])], rows, note="Small: 95 % interval.")
 
 
-def profile_figure(solves, style_of, is_solved, label="label"):
-    """Of samples, or solves of backends, on the scenes that all have; also the number of these. None where there are none."""
-    scenes = sorted(set.intersection(*(set(one.scene) for one in solves)))
-    if not scenes:
-        return None, 0
-    times = [dict(zip(one.scene, np.where(is_solved(one), one.latency, np.inf))) for one in solves]
-    ratios = measures.performance_profiles(np.array([[of_one[scene] for of_one in times] for scene in scenes]))
-    finite = ratios[np.isfinite(ratios)]
-    most = max(2.0, finite.max() if len(finite) else 2.0)
-    places = np.geomspace(1.0, most, 200)
-    curves = [Curve(getattr(one, label), np.column_stack([places, 100 * np.searchsorted(ratios[:, i], places, side="right") / len(scenes)]),
-                    style_of(i, one), "steps") for i, one in enumerate(solves)]
-    figure, axes = chart(curves, "time / fastest method's time on the same scene", "scenes solved [%]", log="x", ylim=(-2, 103))
-    axes.set_xticks([tick for tick in ((1, 2, 5, 10, 20, 50, 100) if most <= 200 else 10.0 ** np.arange(7)) if tick <= most])
-    return (figure, axes), len(scenes)
-
-
-_SWEEP_SIZES = (12, 30)
-
-
-@Experiment
-def performance_profiles(results, published):
-    """Performance profiles
-    Claim: Which exact method is fastest on most scenes, and how far behind are the others?
-    Protocol: Dolan and Moré: the share of scenes that a method solves (it proves the optimum, or that there is
-    no lane) within a multiple of the fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods
-    of the same cone set and the same objective only;
-    a scene without a proof after 0.4 s counts as unsolved. If the methods of the comparison saw different cone sets,
-    those of the sweep are shown.
-    Source: Dolan and Moré, Benchmarking optimization software with performance profiles, 2002.
-    Command: conelane compare --methods rld-cbc,rld-pair --nearest 12 --out RESULTS"""
-    problems = {}  # (cone set, objective) -> samples, two or more
-    for samples, sizes in ((results.samples, None), (results.sweep, _SWEEP_SIZES)):
-        known = {nearest for nearest, _ in problems}
-        for sample in samples:
-            if sample.has("solved") and (sizes is None or (sample.nearest in sizes and sample.nearest not in known)):
-                problems.setdefault((sample.nearest, results.objective_of(sample)), []).append(sample)
-        problems = {problem: of_one for problem, of_one in problems.items() if len(of_one) > 1}
-    figures, of_set = [], {}
-    for (nearest, _), samples in problems.items():
-        figure, scenes = profile_figure(samples, lambda _, sample: method_style(results.methods, sample.method), lambda sample: sample.solved == 1.0)
-        if not figure:
-            continue
-        of_set[nearest] = of_set.get(nearest, 0) + 1  # one for each objective
-        name = f"profile-{nearest or 'all'}" + (f"-{of_set[nearest]}" if of_set[nearest] > 1 else "")
-        on = "all that is visible" if nearest is None else f"the {nearest} nearest cones"
-        figures.append(drawn(name, "The upper left curve is the fastest on most scenes, a curve that ends below 100 % "
-                             f"left some unproven. On {on}, {scenes} scenes.", figure))
-    if not figures:
-        raise Missing("no two methods prove optimality of one objective on the same cone sets.")
-    return group(figures) if len(figures) > 1 else figures[0]
-
-
 _FOLDER = "race"
 _MAX_FRAMES = 1500  # of the replay: what a page has room for
 _RACE = {"track": TEXT, "method": TEXT, "false_positive_rate": NUMBER, "finished": YES_OR_NO, "cones_hit": WHOLE, "finished_laps": WHOLE,
@@ -201,16 +148,10 @@ def _replay(results):
     if chosen is None:
         return ""
     chosen["frames"] = chosen["frames"][-_MAX_FRAMES:]
-    data = json.dumps(chosen, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     what = (f"{escape(chosen['track'])}, {escape(chosen['method'])}, "
             f"{percent_label(chosen['false_positive_rate'])} % false positives: {escape(chosen['end'])}")
-    return (f'<div id="race-replay"><h4>What was driven: {what}</h4>'
-            '<div class="stage"><canvas id="race-scene" role="img" aria-label="Race, seen from above"></canvas></div>'
-            '<div class="transport"><button type="button" id="race-play" aria-label="play the race">▶</button>'
-            '<input type="range" id="race-frame" min="0" value="0" aria-label="frame"><output id="race-time"></output>'
-            '</div><p class="note">Filled: cones. × false positives. Large: seen in this frame. The line ahead of the car is '
-            'the path it was given.</p>'
-            f'<script type="application/json" id="race-data">{data}</script></div>')
+    note = "Filled: cones. × false positives. Large: seen in this frame. The line ahead of the car is the path it was given."
+    return f'<div id="race-replay"><h4>What was driven: {what}</h4>{player(chosen, note)}</div>'
 
 
 @Experiment

@@ -1,6 +1,5 @@
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 
-#include "graph_search/baselines/astar_lane/near_cones.hpp"
 #include "graph_search/baselines/astar_lane/path_boundaries.hpp"
 #include "graph_search/shared/search_budget.hpp"
 #include "graph_search/shared/search_graph.hpp"
@@ -11,7 +10,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <unordered_set>

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <numbers>
 #include <span>
 
 namespace conelane {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace conelane {
 namespace {
@@ -167,35 +166,6 @@ bool DelaunayTriangulation::build(std::span<const Point> points, SearchBudget& b
         }
     }
     return true;
-}
-
-std::vector<std::pair<Vertex, Vertex>> DelaunayTriangulation::edges() const {
-    std::vector<std::pair<Vertex, Vertex>> joined;
-    if (origin_.empty()) {
-        for (std::size_t i = 0; i + 1 < sites_.size(); ++i) {
-            joined.emplace_back(sites_[i].vertex, sites_[i + 1].vertex);
-        }
-        return joined;
-    }
-    for (HalfEdge side = 0; side < origin_.size(); ++side) {
-        const HalfEdge beyond = twin_[side];
-        if (beyond != kNone) {
-            if (beyond < side) continue;
-            const auto opposite = [this](HalfEdge edge) { return sites_[origin_[next(next(edge))]]; };
-            if (in_circle(sites_[origin_[side]], sites_[origin_[beyond]], opposite(side), opposite(beyond)) ==
-                0)
-                continue;
-        }
-        joined.emplace_back(origin(side), target(side));
-    }
-    return joined;
-}
-
-std::vector<std::pair<Vertex, Vertex>> delaunay_edges(std::span<const Point> points) {
-    DelaunayTriangulation triangulation;
-    SearchBudget unlimited;
-    return triangulation.build(points, unlimited) ? triangulation.edges()
-                                                  : std::vector<std::pair<Vertex, Vertex>>{};
 }
 
 }  // namespace conelane

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -33,10 +32,6 @@ class DelaunayTriangulation {
     /// The same side seen from the triangle beyond it; kNone on the hull.
     [[nodiscard]] HalfEdge twin(HalfEdge side) const { return twin_[side]; }
     [[nodiscard]] static HalfEdge next(HalfEdge side) { return side % 3 == 2 ? side - 2 : side + 1; }
-
-    /// Each edge once. Of four and more points on an empty circle, only the sides of their polygon; of points
-    /// on one line, the edges between neighbours.
-    [[nodiscard]] std::vector<std::pair<Vertex, Vertex>> edges() const;
 
   private:
     /// The place on the grid.
@@ -66,9 +61,5 @@ class DelaunayTriangulation {
     std::vector<HalfEdge> hull_side_;
     std::vector<HalfEdge> unsettled_;
 };
-
-/// The edges of the triangulation as an EdgeRule: section IV-B of the CLC paper. This graph has too few
-/// edges.
-[[nodiscard]] std::vector<std::pair<Vertex, Vertex>> delaunay_edges(std::span<const Point> points);
 
 }  // namespace conelane

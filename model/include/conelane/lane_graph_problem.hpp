@@ -6,9 +6,7 @@
 #include "conelane/stop_reason.hpp"
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 

@@ -19,6 +19,7 @@ enum class SolverTrait : unsigned {
     suits_paper = 1U << 2U,         ///< solves Formulation::paper of 12 cones at once; others take seconds
     reads_time_of_day = 1U << 3U,   ///< a clock that is set during a solve changes its time limit
     refuses_huge_costs = 1U << 4U,  ///< costs of 1e25 and more give status error and a message
+    tuned = 1U << 5U,               ///< its library has not the default settings
 };
 [[nodiscard]] constexpr SolverTrait operator|(SolverTrait a, SolverTrait b) {
     return SolverTrait{static_cast<unsigned>(a) | static_cast<unsigned>(b)};

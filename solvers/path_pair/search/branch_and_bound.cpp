@@ -78,8 +78,8 @@ Verdict BranchAndBound::ascend_root() {
     root_.max_steps = options_.root_steps;
     ascent_.begin(root_, {.patience = options_.tuning.ascent.root,
                           .last_search = {tuning.max_frontiers, true},
-                          .first_try = has_first_beam ? 0 : 1,
-                          .beam_steps = tuning.beam_steps.size()});
+                          .smooths = system_.kind_count == 1,
+                          .first_try = has_first_beam ? 0 : 1});
     Verdict verdict = Verdict::open;
     while (verdict == Verdict::open && !ascent_.is_done()) {
         if (is_huge || ascent_.steps() >= windows.first_step) improver_.improve(root_.graph, root_.bound);

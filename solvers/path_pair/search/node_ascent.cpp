@@ -24,7 +24,8 @@ NodeAscent::NodeAscent(const Context& context)
       clock_(context.clock),
       relaxation_(graph_, context.system, cliques_, decisions_, clock_),
       completion_(graph_, relaxation_, incumbent_, context.second_leg, clock_),
-      frontiers_(graph_, relaxation_, incumbent_, options_, clock_) {}
+      frontiers_(graph_, relaxation_, incumbent_, options_, clock_),
+      smoothed_(graph_, context.system, options_.tuning.ascent, clock_) {}
 
 void NodeAscent::restart(MultiplierStages* stages) {
     stages_ = stages;
@@ -51,6 +52,7 @@ void NodeAscent::begin(const Node& node, const Rules& rules) {
 
 Verdict NodeAscent::step(Node& node, const Aim& aim) {
     if (clock_.out_of_time()) return Verdict::stopped;
+    if (rules_.smooths && state_.step == tuning().smoothed_step) smooth(node.graph);
     state_.value = evaluate(node.graph);
     if (state_.value == -kUnreachable) return Verdict::stopped;
     note_value(node);
@@ -87,6 +89,16 @@ double NodeAscent::evaluate(const ResidualGraph& graph) {
     if (stages_ == nullptr || value == -kUnreachable) return value;
     stages_->round(multipliers_);
     return relaxation_.evaluate(graph, multipliers_);
+}
+
+void NodeAscent::smooth(const ResidualGraph& graph) {
+    if (!smoothed_.find(graph, cliques_, multipliers_)) {
+        multipliers_.clique.resize(to_index(cliques_.size()), 0.0);
+        return;
+    }
+    ascent_.restart(multipliers_);
+    state_.since_best = 0;
+    state_.scale = tuning().scale_after;
 }
 
 void NodeAscent::take_best_multipliers(const Node& node) {
@@ -136,11 +148,6 @@ Verdict NodeAscent::try_frontiers(const ResidualGraph& graph) {
                                             state_.step == 0 ? tuning.first_beam_width : 0});
     }
     if (verdict != Verdict::open) return verdict;
-    if (!state_.is_last && state_.beams < rules_.beam_steps &&
-        state_.step >= tuning.beam_steps[state_.beams]) {
-        ++state_.beams;
-        frontiers_.run_beam(graph, tuning.beam_width);
-    }
     state_.failed_gap = incumbent_.limit() - state_.value;
     state_.updates = 0;
     return Verdict::open;

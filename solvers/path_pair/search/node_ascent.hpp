@@ -2,6 +2,7 @@
 
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/bound/smoothed_ascent.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/path_pair_options.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
@@ -57,8 +58,8 @@ class NodeAscent {
         AscentPatience patience;
         FrontierSolve::TargetLimits last_search;  ///< of frontiers, at the ascent's end
         bool separates_cliques = true;
-        int first_try = 1;           ///< the step that searches frontiers first; 0: after a beam
-        std::size_t beam_steps = 0;  ///< of FrontierTuning::beam_steps, so many
+        bool smooths = false;  ///< at one step, multipliers come from a smoothed ascent
+        int first_try = 1;     ///< the step that searches frontiers first; 0: after a beam
     };
     /// The steps aim at the cost of the incumbent. If windows have found it, they aim at `outside_cost`, that
     /// of the best one found otherwise.
@@ -92,13 +93,14 @@ class NodeAscent {
         double scale = 1.0;                ///< of the steps
         int since_best = 0;                ///< steps without progress
         int next_completion = 0;           ///< the step that completes walks next
-        std::size_t beams = 0;             ///< run so far
         std::int64_t updates = 0;          ///< of labels since the frontiers were last tried, about
         double failed_gap = kUnreachable;  ///< the gap at which the frontiers were too many
     };
 
     /// Minus infinity if the time has ended.
     double evaluate(const ResidualGraph& graph);
+    /// Goes on from the multipliers of a smoothed ascent. Only the next evaluation tells what they are worth.
+    void smooth(const ResidualGraph& graph);
     /// The node's best multipliers so far, with 0 for cliques that came later.
     void take_best_multipliers(const Node& node);
     /// Keeps the multipliers where they are the best so far, and counts steps without progress.
@@ -126,6 +128,7 @@ class NodeAscent {
     FrontierSolve frontiers_;
     ArcFixing fixing_;
     CliqueSeparation separation_;
+    SmoothedAscent smoothed_;
     Ascent ascent_;
     WalkUsage usage_;
     Multipliers multipliers_;  ///< of the current step

@@ -36,10 +36,7 @@ class NotesItsLimit final : public LaneDetector {
 };
 
 LaneAnswer found(const Lane& lane) {
-    LaneAnswer answer;
-    answer.status = LaneStatus::found;
-    answer.lane = lane;
-    return answer;
+    return LaneAnswer{.status = LaneStatus::found, .lane = lane};
 }
 
 LaneAnswer answered(const LaneAnswer& said, const Scene& scene) {
@@ -108,8 +105,7 @@ TEST(DrivableAnswers, TheSearchLeavesTimeForTheCheck) {
 }
 
 TEST(DrivableAnswers, OtherAnswersStayUnchanged) {
-    LaneAnswer said;
-    said.status = LaneStatus::none;
+    LaneAnswer said{.status = LaneStatus::none};
     EXPECT_EQ(answered(said, swapped().scene).status, LaneStatus::none);
     said.status = LaneStatus::error;
     said.message = "a fault";

@@ -25,9 +25,7 @@ struct Boundaries {
 
 /// Both boundaries beside the x axis: y at each x, and its negative.
 Boundaries about_the_axis(const std::vector<Point>& left) {
-    std::vector<Point> right;
-    for (const Point& point : left) right.emplace_back(point.x(), -point.y());
-    return {left, right};
+    return {left, mapped(left, [](const Point& point) { return Point(point.x(), -point.y()); })};
 }
 
 TEST(DrivableLaneLimits, ALaneBelowEightyCentimetresIsUnusable) {

@@ -27,9 +27,8 @@ TEST(DrivableLane, DoubledAndCoincidentConesChangeLittle) {
         const DrivableLane other = doubled.driven();
         expect_drivable(doubled, other);
         ASSERT_EQ(other.points.size(), lane.points.size());
-        for (std::size_t i = 0; i < lane.points.size(); ++i) {
+        for (std::size_t i = 0; i < lane.points.size(); ++i)
             EXPECT_LT((other.points[i].position - lane.points[i].position).norm(), 0.15);
-        }
     }
 }
 
@@ -40,9 +39,8 @@ TEST(DrivableLane, ConesOfNoLaneDoNotMatter) {
     std::ranges::reverse(course.scene.cones);
     const DrivableLane other = course.driven();
     ASSERT_EQ(other.points.size(), lane.points.size());
-    for (std::size_t i = 0; i < lane.points.size(); ++i) {
+    for (std::size_t i = 0; i < lane.points.size(); ++i)
         EXPECT_EQ(other.points[i].position, lane.points[i].position);
-    }
 }
 
 TEST(DrivableLane, ALaneWithoutExtentHasNoPoints) {
@@ -113,9 +111,8 @@ TEST(DrivableLane, RefusesInvalidLanes) {
                        c.lane.right.resize(2);
                    }),
                    "right");
-    for (const double step : {0.0, -1.0, 0.009, 100.1, nan, infinity}) {
+    for (const double step : {0.0, -1.0, 0.009, 100.1, nan, infinity})
         expect_refused(good, "step_m", {.step_m = step});
-    }
     for (const double smoothing : {0.2, 5.1, nan})
         expect_refused(good, "smoothing_m", {.smoothing_m = smoothing});
     for (const double width : {0.9, 6.6, nan})
@@ -152,9 +149,8 @@ TEST(DrivableLane, AnyLaneGivesFiniteNumbers) {
         EXPECT_TRUE(all_finite(lane));
         EXPECT_EQ(lane.points.empty(), lane.length_m == 0.0);
         with_points += lane.points.empty() ? 0 : 1;
-        for (const DrivablePoint& point : lane.points) {
+        for (const DrivablePoint& point : lane.points)
             EXPECT_GT(std::min(point.width_left_m, point.width_right_m), 0.0);
-        }
     }
     EXPECT_GT(with_points, 300U);
 }

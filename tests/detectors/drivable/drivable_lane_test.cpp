@@ -212,9 +212,7 @@ TEST(DrivableLane, WidthsEndAtTheBoundaries) {
 
 TEST(DrivableLane, PassesOnHowFarTheDetectorTrustsALane) {
     const Course course = straight(range(0.0, 20.0, 4.0), range(0.0, 20.0, 4.0));
-    LaneAnswer answer;
-    answer.status = LaneStatus::found;
-    answer.lane = course.lane;
+    LaneAnswer answer{.status = LaneStatus::found, .lane = course.lane};
     EXPECT_EQ(drivable(answer, course.scene).trusted_m, std::nullopt);
     answer.trusted_m = 12.5;
     EXPECT_EQ(drivable(answer, course.scene).trusted_m, 12.5);

@@ -42,10 +42,7 @@ void expect_drivable_track(const Track& track, const DrivableBounds& bounds = {}
     const double mean_length_m = 0.5 * (polyline_length_m(course.left(), track.closed) +
                                         polyline_length_m(course.right(), track.closed));
     EXPECT_NEAR(lap.length_m, mean_length_m, 0.05 * mean_length_m);
-    SceneOptions options;
-    options.false_positive_rates = {0.0};
-    options.ranges_m = {30.0, 50.0};
-    options.every_m = 3.3;
+    SceneOptions options{.false_positive_rates = {0.0}, .ranges_m = {30.0, 50.0}, .every_m = 3.3};
     constexpr double kEndsApart_m = 7.0;
     std::size_t one_sided = 0;
     std::size_t two_sided = 0;

@@ -32,7 +32,7 @@ class RecordedCourse : public testing::Test {
   protected:
     void drive(double from_m, double to_m, double aside_m = 0.0, double step_m = 0.6) {
         for (double s_m = from_m; s_m < to_m; s_m += step_m)
-            memory_.record(lane_ahead(course_, s_m, aside_m));
+            memory_.record(lane_ahead(course_, s_m, aside_m), ConeMemory{});
     }
     DrivenCourse course_ = tests::oval(3);
     CourseMemory memory_{CourseSettings{}, 0.5};
@@ -99,7 +99,7 @@ TEST_F(RecordedCourse, AGapThatIsTooLongBeginsANewOne) {
     drive(0.0, 0.6 * course_.lap_m);
     drive(0.8 * course_.lap_m, course_.lap_m + 5.0);
     EXPECT_FALSE(memory_.closed());
-    memory_.record(DrivableLane{});  // no lane: nothing to record
+    memory_.record(DrivableLane{}, ConeMemory{});  // no lane: nothing to record
     drive(course_.lap_m + 5.0, 1.9 * course_.lap_m);
     EXPECT_TRUE(memory_.closed()) << "a whole lap since the gap";
 }

@@ -7,7 +7,7 @@
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/refusal.hpp"
+#include "tests/support/small_program.hpp"
 #include "tests/support/testing.hpp"
 
 #include <unistd.h>
@@ -15,23 +15,7 @@
 namespace conelane {
 namespace {
 
-/// minimise x - 2 y, x + y <= 1, 0 <= y - z <= 0.5 with x, y binary and z in [0, 0.75].
-BinaryProgram small_program() {
-    BinaryProgram program;
-    const int x = program.add_column({"x"}, 1.0, true);
-    const int y = program.add_column({"y", {1}}, -2.0, true);
-    const int z = program.add_column({"z", {1, 2}}, 0.0, false, 0.0, 0.75);
-    RowWriter rows(program);
-    rows.begin({"one_of"}, -kInfinity, 1.0);
-    rows.add(x, 1.0);
-    rows.add(y, 1.0);
-    rows.end();
-    rows.begin({"close", {0}}, 0.0, 0.5);
-    rows.add(y, 1.0);
-    rows.add(z, -1.0);
-    rows.end();
-    return program;
-}
+using tests::small_program;
 
 TEST(ProgramFiles, MpsMarksIntegersAndWritesRanges) {
     std::ostringstream out;
@@ -196,54 +180,6 @@ TEST(SolutionFiles, RemarksGiveValuesThatAFormatLacks) {
     EXPECT_EQ(read("=status= unknown\n=bound= -3\n").bound, -3.0);
 }
 
-TEST(SolutionFiles, BadOnesNameTheirLine) {
-    for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
-             {"", "line 1: the file is empty"},
-             {"Optimal - objective value 1\n 0 q 1 1\n", "line 2: the program has no column q"},
-             {"Optimal - objective value 1\n 0 x\n", "line 2: must be INDEX NAME VALUE"},
-             {"c\ns mip 2 9 o 1\n", "line 2: has 9 columns, the program 3"},
-             {"s mip 2 3 o 1\nj 4 1\n", "line 2: must be 'j COLUMN VALUE' after the line of the status"},
-             {"s mip 2 3 o 1\nj 1 1\n", "line 3: the file ends before its line 'e o f'"},
-             {"=obj= -2\ny_1 1\ny_1 1\n", "line 3: column y_1 is there twice"},
-             {"=obj= -2\ny_1 1e999\n", "line 2: must be NAME VALUE"},
-             {"=obj= nothing\n", "line 1: must be =obj= VALUE"},
-             {"=bound= 1\nx 1\n=bound= 2\n", "line 3: =bound= is there twice"},
-             {"Optimal - objective value -2\n 1 y_1 1 -2\n=obj= -3\n",
-              "line 4: =obj= says -3, the head of the solution -2"},
-             {"Stopped on time - objective value -2\n 1 y_1 1 -2\n=status= optimal\n",
-              "line 4: =status= says optimal, the head of the solution does not"},
-             {"Optimal - objective value nan\n 1 y_1 1 -2\n",
-              "line 1: 'objective value' must be followed by a finite number"},
-             {"=objective= 3\n", "line 1: is not a line of a solution: =objective="},
-             {"=status= optimal\n", "line 2: there is no point with this status"},
-             {"=status= good\nx 1\n", "line 1: =status= must be optimal, feasible, infeasible or unknown"},
-             {"Model status\nOptimal\n# Primal solution values\nNone\n",
-              "line 5: there is no point with status Optimal"},
-             {"solution status: optimal\nx 1\n", "line 2: must be 'objective value: VALUE'"},
-             {"<?xml version = \"1.0\"?>\n",
-              "line 1: is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB "
-              ".sol"}})
-        EXPECT_EQ(refusal([&] { (void)read(text); }), words);
-}
-
-TEST(SolutionFiles, FaultsOfAPointNameColumnOrRow) {
-    const std::string optimum = "=obj= -2\n=status= optimal\ny_1 1\nz_1_2 0.5\n";
-    for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
-             {optimum, ""},
-             {optimum + "=bound= -2\n", ""},
-             {"=status= unknown\n=bound= 5\n", ""},
-             {"y_1 0.99999\nz_1_2 0.5\n=obj= -1.99998\n", ""},  // solvers round
-             {"y_1 0.6\nz_1_2 0.5\n", "column y_1 is 0.6, not integral"},
-             {"y_1 3\n", "column y_1 is 3, outside 0 to 1"},
-             {"z_1_2 0.8\n", "column z_1_2 is 0.8, outside 0 to 0.75"},
-             {"y_1 1\n", "row close_0 of the program is 1, outside 0 to 0.5"},
-             {"z_1_2 0.5\n", "row close_0 of the program is -0.5, outside 0 to 0.5"},
-             {"x 1\ny_1 1\nz_1_2 0.5\n", "row one_of of the program is 2, outside -1e+300 to 1"},
-             {"=obj= -2.001\ny_1 1\nz_1_2 0.5\n", "it claims the objective -2.001, its point has -2"},
-             {optimum + "=bound= -1.9\n", "it claims the bound -1.9, its point has the objective -2"}})
-        EXPECT_EQ(fault_of(read(text), small_program()), words) << text;
-}
-
 struct RoundTrip {
     std::string program;  ///< the program that must be installed
     std::string ending;
@@ -299,9 +235,8 @@ TEST_P(RoundTrips, OtherProgramsFindTheSameOptimum) {
             ASSERT_EQ(theirs.status, SolutionFile::Status::optimal);
             EXPECT_NEAR(*theirs.objective, *ours.bound, 1e-6);
             double recomputed = 0.0;
-            for (std::size_t c = 0; c < theirs.point.size(); ++c) {
+            for (std::size_t c = 0; c < theirs.point.size(); ++c)
                 recomputed += theirs.point[c] * model.program().columns[c].objective;
-            }
             EXPECT_NEAR(recomputed, *ours.bound, 1e-5);
         }
     }

@@ -2,10 +2,13 @@
 
 #include "evaluation/formats/run_log.hpp"
 
+#include "evaluation/formats/track_spec.hpp"
+#include "evaluation/input_error.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"
+#include "tests/support/refusal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,17 +16,11 @@
 namespace conelane {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
-
 using Points = std::vector<Point>;
 
 std::string list_of(const Points& points) {
-    std::vector<std::string> texts;
-    for (const Point& point : points) texts.push_back(fmt::format("[{}, {}]", point.x(), point.y()));
+    std::vector<std::string> texts =
+        mapped(points, [](const Point& point) { return fmt::format("[{}, {}]", point.x(), point.y()); });
     return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
@@ -58,23 +55,17 @@ LogMap straight(double end) {
 }
 
 SceneOptions plain() {
-    SceneOptions options;
-    options.false_positive_rates = {0.0};
-    options.ranges_m = {30.0};
-    return options;
+    return SceneOptions{.false_positive_rates = {0.0}, .ranges_m = {30.0}};
 }
 
 std::vector<double> xs(const AnnotatedScene& scene, const std::vector<ConeId>& run) {
-    std::vector<double> result;
-    for (const ConeId id : run) {
-        result.push_back(std::ranges::find(scene.scene.cones, id, &Cone::id)->position.x());
-    }
-    return result;
+    return mapped(run, [&](const ConeId id) {
+        return std::ranges::find(scene.scene.cones, id, &Cone::id)->position.x();
+    });
 }
 
 std::vector<double> missed_xs(const AnnotatedScene& scene) {
-    std::vector<double> result;
-    for (const Cone& cone : scene.missed) result.push_back(cone.position.x());
+    std::vector<double> result = mapped(scene.missed, [](const Cone& cone) { return cone.position.x(); });
     std::ranges::sort(result);
     return result;
 }
@@ -83,9 +74,6 @@ class RunLog : public FileTest {
   protected:
     [[nodiscard]] Track read(const std::vector<std::string>& frames) const {
         return read_run_log(file_with(log_of(frames), "run.json"));
-    }
-    [[nodiscard]] std::string error_in(const std::string& text) const {
-        return error_of([&] { (void)read_run_log(file_with(text, "run.json")); });
     }
 };
 
@@ -217,40 +205,14 @@ TEST_F(RunLog, ARunThatComesBackIsAClosedCourse) {
 /// Two loops that cross, as on a skidpad, are not a single lane.
 TEST_F(RunLog, APathThatCrossesItselfBoundsNoLane) {
     LogMap map = straight(30.0);
-    std::vector<std::string> frames;
-    for (const Point& place : Points{{0, 0}, {10, 0}, {10, 6}, {5, 6}, {5, -6}}) {
-        frames.push_back(frame(place, kEast, map));
-    }
+    const std::vector<std::string> frames =
+        mapped(Points{{0, 0}, {10, 0}, {10, 6}, {5, 6}, {5, -6}},
+               [&](const Point& place) { return frame(place, kEast, map); });
     const Track run = read(frames);
     EXPECT_THAT(run.left, IsEmpty());
     ASSERT_THAT(run.warnings, testing::Not(IsEmpty()));
     EXPECT_THAT(run.warnings.front(), HasSubstr("bound no lane"));
     EXPECT_THAT(run.driven, testing::Not(IsEmpty()));
-}
-
-TEST_F(RunLog, FaultsNameFileAndKey) {
-    const std::string map = "[[[1, 1]], [], [], [], []]";
-    const auto with = [](const std::string& position, const std::string& direction,
-                         const std::string& cones) {
-        return R"([{"car_position": )" + position + R"(, "car_direction": )" + direction +
-               R"(, "slam_cones": )" + cones + "}]";
-    };
-    for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
-             {with("[0, 0]", "[1, 0]", map), "no error"},
-             {"{}", "run.json: must be an array"},
-             {"[]", "run.json: holds no frame"},
-             {"[3]", "run.json: [0]: must be a JSON object"},
-             {R"([{"car_position": [0, 0]}])", "run.json: [0].car_direction: is missing"},
-             {with("[0]", "[1, 0]", map), "run.json: [0].car_position: must be [x, y]"},
-             {with("[0, 1e9]", "[1, 0]", map), "run.json: [0].car_position[1]: is beyond 10^7 m"},
-             {with("[0, 0]", "[0, 0]", map), "run.json: [0].car_direction: must not be [0, 0]"},
-             {with("[0, 0]", "[1, 0]", "[[], []]"), "run.json: [0].slam_cones: must hold five lists"},
-             {with("[0, 0]", "[1, 0]", "[[[1, \"2\"]], [], [], [], []]"),
-              "run.json: [0].slam_cones[0][0][1]: must be a number"},
-             {with("[0, 0]", "[1, 0]", "[[], [], [], [], []]"), "run.json: slam_cones: no frame has a cone"}})
-        EXPECT_EQ(error_in(text), message);
-    EXPECT_THAT(error_in("[{"), HasSubstr("run.json:1: "));
-    EXPECT_THAT(error_of([&] { (void)read_run_log(path("nowhere.json")); }), HasSubstr("nowhere.json"));
 }
 
 /// The recorded runs: two laps of a colored course, a car that leaves its lane, and a skidpad.
@@ -287,6 +249,70 @@ TEST(RecordedRuns, GiveBoundariesWhereTheyHaveColorsAndOneLane) {
     const Track skidpad = read_run_log(folder / "skidpad.json");
     EXPECT_THAT(skidpad.warnings, ElementsAre(HasSubstr("bound no lane")));
     EXPECT_EQ(skidpad.driven.size(), skidpad.frames.size());
+}
+
+/// Of the cones of `truth`, the share that `found` has too, each within half a metre.
+double share_found(const std::vector<Point>& truth, const std::vector<Point>& found) {
+    const auto is_found = [&](const Point& cone) {
+        return std::ranges::any_of(found, [&](const Point& other) { return (other - cone).norm() < 0.5; });
+    };
+    return static_cast<double>(std::ranges::count_if(truth, is_found)) / static_cast<double>(truth.size());
+}
+
+/// A car drives round courses among false cones that stay, with noise, missed cones and without colors: what
+/// it drove through is the course.
+TEST_F(RunLog, ADrivenPathLabelsWhatTheCarSaw) {
+    for (const char* name : {"curvy", "hairpins", "kidney", "serpentine"}) {
+        const Track course = load_tracks(fmt::format("generated:{}@5", name)).front();
+        const SceneOptions seen{.false_positive_rates = {0.3},
+                                .ranges_m = {20.0},
+                                .every_m = 1.0,
+                                .noise_sigma_m = 0.1,
+                                .miss_rate = 0.05,
+                                .persistent = true,
+                                .seed = 3};
+        std::string lines;
+        for (const AnnotatedScene& scene : generate_scenes(course, seen)) {
+            const auto cones = mapped(scene.scene.cones, [](const Cone& cone) {
+                return fmt::format(R"({{"x": {}, "y": {}}})", cone.position.x(), cone.position.y());
+            });
+            const Pose& pose = scene.scene.pose;
+            lines += fmt::format(R"({{"pose": {{"x": {}, "y": {}, "yaw": {}}}, "cones": [{}]}})"
+                                 "\n",
+                                 pose.position.x(), pose.position.y(), pose.yaw_rad, fmt::join(cones, ", "));
+        }
+        const auto file = file_with(lines, "lap.frames.jsonl");
+        EXPECT_EQ(load_tracks("run:" + file.parent_path().string()).size(), 1U) << "all files of its folder";
+        const Track run = read_driven_run(file);
+        EXPECT_EQ(run.name, "run_lap");
+        EXPECT_EQ(run.closed, course.closed) << name;
+        const TrackBoundaries truth = boundaries(course);
+        const TrackBoundaries found = boundaries(run);
+        EXPECT_GT(share_found(truth.left, found.left), 0.95) << name;
+        EXPECT_GT(share_found(truth.right, found.right), 0.95) << name;
+        EXPECT_GT(share_found(found.left, truth.left), 0.95) << name;
+        EXPECT_GT(share_found(found.right, truth.right), 0.95) << name;
+    }
+}
+
+TEST_F(RunLog, ADrivenPathWithoutALaneIsRefused) {
+    const auto file = file_with(R"({"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"x": 5, "y": 2}]})",
+                                "short.frames.jsonl");
+    EXPECT_THAT(refusal<InputError>([&] { (void)read_driven_run(file); }),
+                AllOf(HasSubstr("short.frames.jsonl"), HasSubstr("bound no lane")));
+}
+
+/// Its colors, which the driven path does without, say the same of a recorded run.
+TEST(RecordedRuns, AreLabelledByTheDrivenPathAsByTheirColors) {
+    const std::filesystem::path run = recorded_data() / "ft_fsd" / "fsg_19_2_laps.json";
+    if (!std::filesystem::exists(run)) GTEST_SKIP() << "no ft_fsd in CONELANE_DATA or in ../shared/data";
+    const Track colored = read_run_log(run);
+    const Track driven = read_driven_run(run);
+    EXPECT_TRUE(driven.closed);
+    EXPECT_GT(share_found(boundaries(colored).left, boundaries(driven).left), 0.95);
+    EXPECT_GT(share_found(boundaries(colored).right, boundaries(driven).right), 0.95);
+    EXPECT_GT(share_found(boundaries(driven).left, boundaries(colored).left), 0.95);
+    EXPECT_GT(share_found(boundaries(driven).right, boundaries(colored).right), 0.95);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/world/ground_truth.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
@@ -12,17 +13,13 @@ namespace {
 const std::vector<std::string> kTracks{"generated:circle", "generated:kidney@2"};
 
 SceneOptions options_of(std::vector<double> ranges_m) {
-    SceneOptions options;
-    options.false_positive_rates = {0.0, 0.2, 0.4};
-    options.ranges_m = std::move(ranges_m);
-    options.every_m = 12.0;
+    SceneOptions options{
+        .false_positive_rates = {0.0, 0.2, 0.4}, .ranges_m = std::move(ranges_m), .every_m = 12.0};
     return options;
 }
 
 std::vector<std::string> ids(const std::vector<AnnotatedScene>& scenes) {
-    std::vector<std::string> all;
-    for (const AnnotatedScene& scene : scenes) all.push_back(scene.scene.id);
-    return all;
+    return mapped(scenes, [](const AnnotatedScene& scene) { return scene.scene.id; });
 }
 
 TEST(SceneSet, SaysHowManyLapsAreMade) {
@@ -88,23 +85,15 @@ bool degenerate(const std::vector<Point>& left, const std::vector<Point>& right,
     const AnnotatedScene scene = with_truth(left, right, closed);
     return is_degenerate(*scene.ground_truth, scene.scene);
 }
-std::vector<Point> ring(double radius_m, double from_rad, double to_rad, int cones) {
-    std::vector<Point> all;
-    for (int i = 0; i < cones; ++i) {
-        const double angle = from_rad + (to_rad - from_rad) * i / cones;
-        all.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle));
-    }
-    return all;
-}
 
 TEST(DegenerateTruth, LanesOfAnyShapeAreNotDegenerate) {
     constexpr double kTurn = 2.0 * std::numbers::pi;
     EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}}));
     EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}, {10, -2}})) << "one ends earlier";
     EXPECT_FALSE(degenerate({{0, 2}, {15, 2}}, {{0, -2}, {5, -2}, {10, -2}, {15, -2}})) << "cones missed";
-    EXPECT_FALSE(degenerate(ring(1.0, 0.0, 3.0, 2), ring(5.0, 0.0, 3.0, 8))) << "a tight bend";
-    EXPECT_FALSE(degenerate(ring(9.0, 0.0, kTurn, 12), ring(12.0, 0.0, kTurn, 16), true));
-    EXPECT_FALSE(degenerate(ring(12.0, 0.0, -kTurn, 16), ring(9.0, 0.0, -kTurn, 12), true))
+    EXPECT_FALSE(degenerate(tests::ring(1.0, 2, 0.0, 3.0), tests::ring(5.0, 8, 0.0, 3.0))) << "a tight bend";
+    EXPECT_FALSE(degenerate(tests::ring(9.0, 12), tests::ring(12.0, 16), true));
+    EXPECT_FALSE(degenerate(tests::ring(12.0, 16, 0.0, -kTurn), tests::ring(9.0, 12, 0.0, -kTurn), true))
         << "the other way";
 }
 
@@ -160,9 +149,8 @@ TEST(TrackLaps, KnowsWhichLapsAreEmpty) {
     Track track;  // two cones a side, all ahead of the one pose
     track.name = "short";
     track.closed = false;
-    for (const Point& position : {Point{1, 2}, Point{5, 2}, Point{1, -2}, Point{5, -2}}) {
+    for (const Point& position : {Point{1, 2}, Point{5, 2}, Point{1, -2}, Point{5, -2}})
         track.cones.push_back({.id = static_cast<ConeId>(track.cones.size()), .position = position});
-    }
     track.left = {0, 1};
     track.right = {2, 3};
     const std::vector<Pose> poses{{{100.0, 0.0}, 0.0}, {{0.0, 0.0}, 0.0}};

@@ -5,10 +5,10 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
-#include "detectors/parameters/parameter_files.hpp"
+#include "detectors/recipe.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/parameter_tag.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_features.hpp"
 #include "graph_search/weights/weight_files.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/front_fixture.hpp"
@@ -16,6 +16,7 @@
 #include "tests/support/refusal.hpp"
 #include "tests/support/test_paths.hpp"
 #include "tests/support/testing.hpp"
+#include "tests/support/text_tables.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -135,68 +136,20 @@ TEST(WeightsFile, TheShippedOnesKeepEveryByte) {
               Json::parse(kStepScoresFile).at("training"));
 }
 
-struct Fault {
-    const char* kind;
-    const char* part;
-    const char* other;  ///< in place of it
-    const char* error;  ///< how the message begins
-};
-constexpr const char* kSteps = R"("steps": {"first":0.0,"spacing":1.0,"scores":[)";
-
+/// refused_weights.txt has the faults.
 TEST(WeightsFile, ErrorsNameTheirKey) {
-    const std::vector<Fault> faults{
-        {"front", "\"version\": 2", "\"version\": 4", "version: must be 1, 2 or 3"},
-        {"front", "\"version\": 2", "\"version\": 3", "colored_extend_hidden: is missing"},
-        {"front", "\"version\": 2", "\"version\": 1", "features: "},  // which has no colors
-        {"front", "own_segment_known", "unknown",
-         "features: 'state' has 'unknown' at place 0, unlike the library: the weights are of another "
-         "version"},
-        {"front", "\"stop_linear\"", "\"stop_lines\"", "stop_linear: is missing"},
-        {"front", "\"start_hidden\": [", "\"start_hidden\": [1,", "start_hidden: has "},
-        {"front", "\"extend_output\": [", "\"extend_output\": [\"a\",",
-         "extend_output: number 0 (from 0) is not a number"},
-        {"front", "\"version\"", "\"edition\"", "version: is missing"},
-        {"front", "\"version\"", "\"edition\": 3,\n\"version\"", "edition: is not a key of weights of front"},
-        {"front", "\"version\"", "\"version\": 2,\n\"version\"", "version: is there twice"},
-        {"colored", "\"version\": 3", "\"version\": 2", "colored_extend_hidden: is not a key"},
-        {"colored", "\"colored_start_linear\"", "\"colored\"", "colored_start_linear: is missing"},
-        {"colored", "\"colored_least_trust\"", "\"colored\"", "colored_least_trust: is missing"},
-        {"costs", "\"version\": 1", "\"version\": 2", "version: must be 1"},
-        {"costs", "\"spacing\"", "\"spaces\"",
-         "features: 'edge' has 'spaces' at place 1, unlike the library: the weights are of another version"},
-        {"costs", "\"far_end\":[", "\"end\":[", "features.far_end: is missing"},
-        {"costs", "\"features\": {", "\"features\": {\"end\":[],", "features.end: is not a key of"},
-        {"costs", "\"turn_output\": [0]", "\"turn_output\": [0,0]",
-         "turn.hidden: must have 28 numbers, not 14"},
-        {"costs", "\"turn_output\": [0]", "\"turn_output\": [true]",
-         "turn_output: number 0 (from 0) is not a number"},
-        {"costs", "\"turn_output\": [0]", "\"turn_output\": 0", "turn_output: must be a list of numbers"},
-        {"costs", "\"turn_output\": [0]", "\"turn_output\": [1e400]",
-         "turn.output: must hold numbers between -1e6 and 1e6"},
-        {"costs", "\"version\"", "\"edge\": 1, \"version\"", "edge: is not a key of learned costs"},
-        {"net", "\"version\": 1", "\"version\": 2", "version: must be 1"},
-        {"net", "\"cones_left\"", "\"cones_right\"", "features: has 'cones_right' at place 1"},
-        {"net", "\"cones_left\"", "7", "features: must be a list of names"},
-        {"net", "\"mean\"", "\"meen\"", "mean: is missing"},
-        {"net", "\"mean\": [0.1,", "\"mean\": [", "mean: must have one entry a feature"},
-        {"net", "\"deviation\": [0.3", "\"deviation\": [-0.3", "deviation: "},
-        {"net", "\"hidden\": [\n  [", "\"hidden\": [\n  [1,", "hidden[0]: has 9 numbers, not 8"},
-        {"net", "\"hidden\": [", "\"hidden\": [5,", "hidden[0]: is missing"},
-        {"net", "\"output_bias\": ", "\"output_bias\": null, \"x\": ", "output_bias: must be a number"},
-        {"steps", "\"version\": 1", "\"version\": 2", "version: must be 1"},
-        {"steps", "\"measures\"", "\"other\"", "measures: is missing"},
-        {"steps", "\"width_m\"", "\"depth_m\"", "measures.width_m: is missing"},
-        {"steps", "\"start_width_m\": {\"first\":2.5", "\"start_width_m\": {\"first\":2.0",
-         "measures.start_width_m.first: is not that of the program"},
-        {"steps", "\"spacing\":0.5", "\"spacing\":\"x\"", "measures.start_width_m.spacing: must be a number"},
-        {"steps", kSteps, R"("steps": {"first":0.0,"spacing":1.0,"scores":[1,)",
-         "measures.steps.scores: must be a list of "},
-        {"steps", kSteps, R"("steps": {"first":0.0,"spacing":1.0,"scores":[null,)",
-         "measures.steps.scores: number 0 (from 0) is not a number"}};
-    for (const Fault& fault : faults) {
-        const Kind& kind = kinds().at(fault.kind);
-        const std::string text = with_other(kind.text, fault.part, fault.other);
-        EXPECT_THAT(refusal([&] { (void)kind.again(text, "{}"); }), testing::StartsWith(fault.error));
+    for (const tests::TableSection& section :
+         tests::table_sections("evaluation/formats/refused_weights.txt")) {
+        const Kind& kind = kinds().at(section.name);
+        for (const std::string& line : section.lines) {
+            const std::vector<std::string> parts = tests::split(tests::replaced(line, "\\n", "\n"), " => ");
+            ASSERT_EQ(parts.size(), 2U) << line;
+            const std::size_t arrow = parts[0].find(" -> ");
+            const std::string text =
+                with_other(kind.text, parts[0].substr(0, arrow), parts[0].substr(arrow + 4));
+            EXPECT_THAT(refusal([&] { (void)kind.again(text, "{}"); }), testing::StartsWith(parts[1]))
+                << line;
+        }
     }
     const std::string deep = R"({"training": )" + std::string(1'000'000, '[') + "}";
     for (const auto& [name, kind] : kinds()) {
@@ -276,9 +229,7 @@ TEST(WeightsFile, TheShippedNetworksTellLanesApart) {
 class LearnedCostsFileTest : public FileTest {};
 
 TEST_F(LearnedCostsFileTest, IsNamedByParameters) {
-    RldParameters parameters;
-    parameters.d_gap = 9.0;
-    parameters.learned_costs = tests::random_learned_costs(2, 3);
+    RldParameters parameters{.d_gap = 9.0, .learned_costs = tests::random_learned_costs(2, 3)};
     write_rld_parameters(path("own.json"), parameters, R"({"seed": 5})");
     EXPECT_THAT(text_of(path("own.json")), testing::HasSubstr(R"("learned_costs": "own.weights.json")"));
     EXPECT_THAT(text_of(path("own.weights.json")), testing::HasSubstr(R"("seed": 5)"));

@@ -20,10 +20,6 @@ namespace {
 using experiments::RecordScorer;
 using experiments::ScoredMethod;
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 /// Three pairs of cones 4 m apart; ids 1, 2, 3 are left, 11, 12, 13 right.
 Scene three_pairs() {
     Scene scene{"three pairs", {{-1.0, 0.0}, 0.0}, {}};
@@ -71,8 +67,7 @@ TEST(PointSnapping, OfTwoConesTheNearerOneIsMeant) {
     EXPECT_THAT(record.answer.lane.left, ElementsAre(5));
 }
 
-/// Answers to any scene: points on cones become these cones, and every id in the result is a cone of the
-/// scene.
+/// Answers to any scene: points on cones become these cones, and every id in the result is one of the scene.
 TEST(PointSnapping, OfRandomScenesEveryConeIsFoundAgain) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         SCOPED_TRACE(seed);
@@ -103,10 +98,7 @@ TEST(Tangles, AreDistinguishedFromLongLanes) {
 
 /// Every answer of a program that is not refused can be scored, even if it makes no sense.
 TEST(ForeignLanes, EveryAcceptedAnswerCanBeScored) {
-    SceneOptions options;
-    options.false_positive_rates = {0.3};
-    options.ranges_m = {30.0};
-    options.every_m = 25.0;
+    SceneOptions options{.false_positive_rates = {0.3}, .ranges_m = {30.0}, .every_m = 25.0};
     const SceneSet set = make_scene_set({"generated:circle", "generated:kidney"}, options);
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         SCOPED_TRACE(seed);
@@ -118,8 +110,7 @@ TEST(ForeignLanes, EveryAcceptedAnswerCanBeScored) {
         for (const AnnotatedScene& annotated : set.scenes) {
             const Scene& scene = annotated.scene;
             const auto ids = [&] {
-                std::vector<ConeId> all;
-                for (const Cone& cone : scene.cones) all.push_back(cone.id);
+                std::vector<ConeId> all = mapped(scene.cones, &Cone::id);
                 shuffle(all, random);
                 all.resize(below(all.size() + 1));
                 return all;

@@ -4,7 +4,7 @@
 #include "evaluation/outside/outside_solver.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/outside/solver_input.hpp"
+#include "model/connecting_flow.hpp"
 #include "model/deadline.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -15,9 +15,6 @@
 
 namespace conelane {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 constexpr double kSame = 1e-6;
 
@@ -32,8 +29,7 @@ OutsideDetector detector(const std::string& command) {
 constexpr SolverPatience kShort{
     .late_ms = 400.0, .start_ms = 10000.0, .end_ms = 400.0, .failures = 4, .lost_ms = 60000.0};
 
-/// Tests that run at the same time have temporary folders too, so this program has a folder of its own for
-/// them.
+/// Tests that run at the same time have temporary folders too: this program has a folder of its own.
 class OwnTemporaryPlace : public testing::Environment {
   public:
     void SetUp() override {
@@ -80,13 +76,7 @@ LaneGraphProblem problem_of(const Scene& scene, Formulation formulation, Pairing
 
 /// With a high benefit of edges and low costs of turns, cycles and paths between near ends pay.
 RldParameters tempting() {
-    RldParameters parameters;
-    parameters.w_b = 3.0;
-    parameters.w_t = 0.02;
-    parameters.t_crit = 1000.0;
-    parameters.d_min = 0.5;
-    parameters.d_near = 8.0;
-    return parameters;
+    return RldParameters{.w_t = 0.02, .w_b = 3.0, .d_min = 0.5, .d_near = 8.0, .t_crit = 1000.0};
 }
 
 /// The flow replaces the rows that are added on demand: the optimum is the same. The test must include the
@@ -127,9 +117,7 @@ TEST(PermutedProgram, IsTheSameProgramInAnotherOrder) {
     const BinaryProgram& program = model.program();
     const PermutedProgram other = permuted(program, 5);
     const auto names = [](const auto& all) {
-        std::vector<std::string> found;
-        for (const auto& one : all) found.push_back(to_string(one.label));
-        return found;
+        return mapped(all, [](const auto& one) { return to_string(one.label); });
     };
     EXPECT_NE(names(other.program.columns), names(program.columns));
     EXPECT_NE(names(other.program.rows), names(program.rows));
@@ -149,6 +137,8 @@ struct Way {
     const char* arguments;  ///< of the child
     bool all_rows;
     std::uint64_t seed;
+
+    friend void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
 };
 
 class RightAnswers : public testing::TestWithParam<Way> {};
@@ -196,6 +186,8 @@ struct Fault {
     const char* name;
     const char* message;
     bool in_one_shot = true;  ///< the fault also exists for a program that is run once
+
+    friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 };
 
 class Faults : public FileTest, public testing::WithParamInterface<Fault> {

@@ -8,14 +8,13 @@
 #include "solvers/registry.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"
 
 #include <stdexcept>
 
 namespace conelane {
 namespace {
-
-using testing::StartsWith;
 
 /// Two columns x_0, x_1 and one row: lower <= c_0 x_0 + c_1 x_1 <= upper.
 BinaryProgram program_of(double c_0, double c_1, double lower, double upper) {
@@ -147,11 +146,7 @@ TEST(ExactLaneGraph, ForgeriesViolateARow) {
 
 /// A pair of boundaries and a circle of cones beside it, which only rows on demand forbid.
 TEST(ExactLaneGraph, ACycleViolatesTheRowsOnDemand) {
-    Scene scene;
-    for (const double y : {1.75, -1.75}) {
-        for (const double x : {1.0, 4.2, 7.4})
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
-    }
+    Scene scene = tests::six_cone_lane();
     for (const auto& [x, y] : {std::pair{2.0, 12.0}, {5.2, 12.0}, {5.2, 15.2}, {2.0, 15.2}})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
     RldParameters parameters;

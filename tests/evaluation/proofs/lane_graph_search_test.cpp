@@ -5,7 +5,7 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
-#include "evaluation/proofs/claim_verdict.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "solvers/core_entries.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/cones_at.hpp"
@@ -73,9 +73,7 @@ TEST(LaneGraphSearch, ReportsThatTheTimeRanOut) {
     // So few edges that the time ends only among the paths. None of them ends at a far cone.
     Scene grid;
     for (int i = 0; i < 16; ++i) grid.cones.push_back({i, {3.2 * (i / 4), 3.2 * (i % 4)}});
-    RldParameters parameters;
-    parameters.d_near = 100.0;
-    parameters.d_h = 100.0;
+    RldParameters parameters{.d_h = 100.0, .d_near = 100.0};
     parameters.s_crit = 0.1;  // allows no diagonals, but turns by a right angle
     parameters.t_crit = 10.0;
     EXPECT_TRUE(search_lane_graph(grid, parameters, kNoLimit).complete);
@@ -112,15 +110,13 @@ TEST(Infeasibility, AsksAnotherSolverThanTheClaimant) {
     EXPECT_NE(other, "");
 }
 
-/// Claims about the optimum of random scenes: the true one, one that is too low and one that no lane graph
-/// has.
+/// Claims about the optimum of random scenes: the true one, one too low, and one that no lane graph has.
 TEST(Optimality, IsProvenOrRefuted) {
     using Kind = ClaimVerdict::Kind;
     int feasible = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Scene scene = tests::random_scene(seed, 14);
-        RldParameters parameters;
-        parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+        RldParameters parameters{.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper};
         const auto solver = make_path_pair_solver();
         const RldReport exact = solve_scene(*solver, scene, parameters, {}).report;
         if (exact.status != SolveStatus::optimal) continue;

@@ -18,7 +18,6 @@ namespace conelane {
 namespace {
 
 using Kind = SearchVerdict::Kind;
-using testing::HasSubstr;
 using tests::six_cone_lane;
 
 constexpr std::int64_t kManySteps = 1'000'000;
@@ -53,13 +52,12 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 10);
-        RldParameters parameters;
-        parameters.d_gap = 9.0;
-        parameters.d_clear = 0.5;
-        parameters.nearest_of_edge = static_cast<double>(seed % 4);
-        parameters.nearest_of_gap = static_cast<double>(seed % 6);
-        parameters.d_side = seed % 4 == 1 ? 2.5 : 0.0;
-        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
+        RldParameters parameters{.d_gap = 9.0,
+                                 .d_clear = 0.5,
+                                 .d_side = seed % 4 == 1 ? 2.5 : 0.0,
+                                 .nearest_of_edge = static_cast<double>(seed % 4),
+                                 .nearest_of_gap = static_cast<double>(seed % 6),
+                                 .learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5)};
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
         if (!certificate.lane_graph) continue;
         const SearchVerdict verdict = verify(certificate, scene, parameters);
@@ -79,9 +77,7 @@ TEST(SearchCertificate, OfFacingCostsAmongNearestConesIsVerified) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 10);
-        RldParameters parameters;
-        parameters.facing_weight = 0.8;
-        parameters.nearest_of_edge = static_cast<double>(1 + seed % 3);
+        RldParameters parameters{.facing_weight = 0.8, .nearest_of_edge = static_cast<double>(1 + seed % 3)};
         const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
         if (!certificate.lane_graph) continue;
         const SearchVerdict verdict = verify(certificate, scene, parameters);
@@ -106,8 +102,7 @@ TEST(SearchCertificate, IsEnumeratedWhereTheMultipliersAreWeak) {
 /// Multipliers of 1/2^`bits` on some cones and on the heading; no lane graph, and the bound that they prove.
 SearchCertificate priced_proof(std::size_t cones, const std::vector<std::size_t>& priced, int bits,
                                double bound) {
-    SearchCertificate certificate;
-    certificate.bound = bound - 1e-9;
+    SearchCertificate certificate{.bound = bound - 1e-9};
     SearchCertificate::Stage stage{std::vector<SearchCertificate::Units>(cones, 0), {}, 0};
     for (const std::size_t cone : priced)
         stage.cone[cone] = SearchCertificate::Units{1} << (SearchCertificate::kFractionBits - bits);
@@ -175,10 +170,7 @@ TEST(SearchCertificate, AWalkThatGainsWithEachRoundProvesNothing) {
 /// car >    2
 ///      1       4
 TEST(SearchCertificate, LegsDoNotMeetAtACone) {
-    Scene scene;
-    for (const Point& position :
-         {Point(1.2, 2.3), Point(1.2, -2.3), Point(3.5, 0.0), Point(5.8, 2.3), Point(5.8, -2.3)})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    const Scene scene = tests::cones_at({{1.2, 2.3}, {1.2, -2.3}, {3.5, 0.0}, {5.8, 2.3}, {5.8, -2.3}});
     RldParameters parameters;
     parameters.s_crit = 0.1;   // only the edges of 3.25 m to and from the cone 2
     parameters.t_crit = 10.0;  // and turns by a right angle
@@ -287,8 +279,7 @@ TEST(SearchCertificate, IsOfItsSceneAndParameters) {
     Scene moved = six_cone_lane();
     moved.cones[1].position.y() += 0.3;
     EXPECT_EQ(verify(straight_proof(), moved).kind, Kind::refused);
-    RldParameters parameters;
-    parameters.w_b = 1.1;
+    RldParameters parameters{.w_b = 1.1};
     EXPECT_EQ(verify(straight_proof(), six_cone_lane(), parameters).kind, Kind::refused);
     parameters = {};
     parameters.pairing = Pairing::paper;
@@ -391,11 +382,8 @@ TEST(SearchCertificate, TheEnumerationProvesWhatWeakMultipliersDoNot) {
 /// Two boundaries of a kilometre across the car's way, 10 m apart: the only lane. The midpoint of the one is
 /// hypot(ahead_m, 1 m) from the car, so it costs 1.2 * (1000 / that)^4.
 SearchCertificate of_a_dear_lane(double ahead_m, Scene& scene, RldParameters& parameters) {
-    scene.cones.clear();
-    for (const double x : {ahead_m, ahead_m + 10.0}) {
-        for (const double y : {499.0, -501.0})
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
-    }
+    const double far_m = ahead_m + 10.0;
+    scene = tests::cones_at({{ahead_m, 499.0}, {ahead_m, -501.0}, {far_m, 499.0}, {far_m, -501.0}});
     parameters.d_e = parameters.d_t = parameters.d_h = parameters.d_max = 1000.0;
     parameters.d_near = 500.0;
     parameters.theta_heading = std::numbers::pi / 2.0;
@@ -446,8 +434,7 @@ TEST(SearchCertificate, OfAStoppedSearchProvesItsBound) {
 using SearchCertificateFile = FileTest;
 
 TEST_F(SearchCertificateFile, IsReadAsItWasWritten) {
-    RldParameters parameters;
-    parameters.pairing = Pairing::paper;
+    RldParameters parameters{.pairing = Pairing::paper};
     std::vector<Scene> scenes;
     std::vector<SearchCertificateRecord> records;
     for (const std::uint64_t seed : {1U, 2U, 3U}) {

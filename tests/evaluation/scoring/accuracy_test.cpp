@@ -8,9 +8,8 @@ namespace {
 TEST(Accuracy, NoTwoEdgesCross) {
     const AnnotatedScene scene = straight_scene();
     Lane changed_over = *scene.ground_truth;  // the sides are exchanged from the fourth cone on
-    for (std::size_t i = 3; i < changed_over.left.size(); ++i) {
+    for (std::size_t i = 3; i < changed_over.left.size(); ++i)
         std::swap(changed_over.left[i], changed_over.right[i]);
-    }
     EXPECT_FALSE(scored(scene, changed_over).accuracy->crossings);
     EXPECT_TRUE(scored(scene, changed_over).accuracy->cones);
     EXPECT_TRUE(scored(scene, changed_over).accuracy->sides);

@@ -1,6 +1,5 @@
-#include "evaluation/scoring/driven_path.hpp"
-
 #include "conelane/invalid_input.hpp"
+#include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "tests/support/testing.hpp"
 
@@ -37,9 +36,7 @@ Lane lane_of(int cones) {
 }
 
 SceneScore scored(const AnnotatedScene& scene, const Lane& lane) {
-    LaneAnswer answer;
-    answer.status = LaneStatus::found;
-    answer.lane = lane;
+    LaneAnswer answer{.status = LaneStatus::found, .lane = lane};
     return score(scene, answer, 1.0, std::nullopt, &kRun);
 }
 

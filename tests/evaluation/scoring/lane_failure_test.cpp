@@ -61,8 +61,7 @@ TEST(LaneFailure, AUsableLaneHasNone) {
 }
 
 TEST(LaneFailure, NothingFoundAndErrors) {
-    LaneAnswer answer;
-    answer.status = LaneStatus::none;
+    LaneAnswer answer{.status = LaneStatus::none};
     EXPECT_EQ(failure_of(straight_scene(), answer), LaneFailure::nothing_found);
     answer.status = LaneStatus::error;
     EXPECT_EQ(failure_of(straight_scene(), answer), LaneFailure::error);

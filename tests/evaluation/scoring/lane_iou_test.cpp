@@ -145,9 +145,8 @@ LaneOutline random_lane(Random& random) {
 
 template <typename Map>
 LaneOutline mapped(LaneOutline lane, Map map) {
-    for (std::vector<Point>* side : {&lane.left, &lane.right}) {
+    for (std::vector<Point>* side : {&lane.left, &lane.right})
         std::ranges::transform(*side, side->begin(), map);
-    }
     return lane;
 }
 
@@ -230,8 +229,7 @@ TEST(LaneAreaProperty, OfAnyRectilinearOutlineIsTheNumberOfCellsWithClockwiseTur
         Random random(seed);
         boost::random::uniform_int_distribution<int> coordinate(0, kCells);
         boost::random::uniform_int_distribution<int> count(1, 6);
-        // Corners alternate between x and y; the last corner is in line with the first one, so the loop
-        // closes.
+        // Corners alternate between x and y; the last one is in line with the first one, so the loop closes.
         std::vector<Point> loop{Point(coordinate(random), coordinate(random))};
         const int corners = count(random);
         for (int i = 0; i < corners; ++i) {

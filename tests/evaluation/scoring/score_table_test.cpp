@@ -9,16 +9,9 @@
 namespace conelane {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-
 KeyedScore keyed(const std::string& detector, std::optional<double> rate, std::optional<double> range_m,
                  Category category, double iou) {
-    SceneScore score;
-    score.category = category;
-    score.iou = iou;
-    score.divergence_known = true;
-    score.latency_ms = 12.5;
+    SceneScore score{.category = category, .iou = iou, .divergence_known = true, .latency_ms = 12.5};
     return {{detector, rate, range_m}, score};
 }
 
@@ -42,11 +35,10 @@ TEST(SummariseByKey, GroupsDetectorsInOrderOfAppearanceThenRateThenRange) {
         keyed("rld", {}, {}, Category::none, 0),
         keyed("rld", 0.3, 50, Category::ground_truth, 1),
     });
-    std::vector<ScoreKey> keys;
-    for (const ScoreRow& row : rows) keys.push_back(row.key);
-    EXPECT_THAT(keys, testing::ElementsAre(ScoreKey{"rld", {}, {}}, ScoreKey{"rld", 0.1, 50},
-                                           ScoreKey{"rld", 0.3, 30}, ScoreKey{"rld", 0.3, 50},
-                                           ScoreKey{"clc", 0.1, 30}));
+    EXPECT_THAT(
+        mapped(rows, &ScoreRow::key),
+        testing::ElementsAre(ScoreKey{"rld", {}, {}}, ScoreKey{"rld", 0.1, 50}, ScoreKey{"rld", 0.3, 30},
+                             ScoreKey{"rld", 0.3, 50}, ScoreKey{"clc", 0.1, 30}));
     EXPECT_EQ(rows[3].summary.scenes, 2u);
     EXPECT_DOUBLE_EQ(rows[3].summary.mean_iou.value(), 0.5);
 }

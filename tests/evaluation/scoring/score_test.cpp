@@ -223,8 +223,7 @@ TEST(Score, FailuresScoreNothing) {
     const AnnotatedScene scene = straight_scene();
     for (const LaneStatus status : {LaneStatus::none, LaneStatus::stopped, LaneStatus::error}) {
         SCOPED_TRACE(to_string(status));
-        LaneAnswer answer;
-        answer.status = status;
+        LaneAnswer answer{.status = status};
         answer.optimality = Optimality{.objective = -3.0, .bound = -3.0, .optimal = true};
         const SceneScore result = score(scene, answer, kLatency_ms, std::nullopt, &kTrack);
         EXPECT_EQ(result.category, Category::none);

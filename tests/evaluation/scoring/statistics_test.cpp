@@ -64,5 +64,28 @@ TEST(Statistics, OfNothingAreRefused) {
     EXPECT_THROW((void)latency_statistics({}), InvalidInput);
 }
 
+TEST(Statistics, CoursesAreTheUnitsOfAnInterval) {
+    const std::vector<double> values{1.0, 1.0, 1.0, 5.0};
+    const CourseMean two = course_mean(values, std::vector<std::string>{"b", "b", "b", "a"});
+    EXPECT_DOUBLE_EQ(two.mean, 2.0);
+    EXPECT_EQ(two.of_course, (std::vector<double>{5.0, 1.0}));
+    // A quarter of the draws has one course alone.
+    EXPECT_EQ(two.interval, std::pair(1.0, 5.0));
+    EXPECT_FALSE(course_mean(values, std::vector<std::string>(4, "a")).interval);
+    EXPECT_THROW((void)course_mean(values, std::vector<std::string>(3, "a")), InvalidInput);
+    std::vector<std::string> courses;
+    std::vector<double> many;
+    for (int k = 0; k < 60; ++k) {
+        courses.push_back(std::to_string(k / 2));
+        many.push_back(k / 2 % 2);
+    }
+    const CourseMean half = course_mean(many, courses);
+    // 30 courses of 0 and 1: the standard error of their mean is 0.5 / sqrt(30).
+    EXPECT_NEAR(half.interval->second - half.interval->first, 2.0 * 1.96 * 0.5 / std::sqrt(30.0), 0.04);
+    EXPECT_EQ(half.interval, course_mean(many, courses).interval);
+    for (double& value : many) value += std::sqrt(static_cast<double>(&value - many.data()));
+    EXPECT_NE(course_mean(many, courses).interval, course_mean(many, courses, 2).interval);
+}
+
 }  // namespace
 }  // namespace conelane

@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/world/generated_tracks.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/recorded_tracks.hpp"
 #include "tests/support/testing.hpp"
 
@@ -11,20 +12,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kEvery_m = 1.1;
 
-std::vector<Point> ring(double radius_m, int cones, double first_rad, double turn) {
-    std::vector<Point> result;
-    for (int k = 0; k < cones; ++k) {
-        const double angle_rad = first_rad + turn * 2 * kPi * k / cones;
-        result.emplace_back(radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad));
-    }
-    return result;
-}
-
 TEST(BoundaryMatching, IsMonotoneAndMatchesWhatFacesEachOther) {
     const std::vector<Point> left{{0, 1}, {1, 1}, {2, 1}, {3, 1}};
     const std::vector<Point> right{{0, -1}, {3, -1}};
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (const FacingPlaces& pair : match_boundaries(left, right)) pairs.emplace_back(pair.left, pair.right);
+    const auto pairs = mapped(match_boundaries(left, right),
+                              [](const FacingPlaces& pair) { return std::pair(pair.left, pair.right); });
     EXPECT_EQ(pairs, (std::vector<std::pair<std::size_t, std::size_t>>{{0, 0}, {1, 0}, {2, 1}, {3, 1}}));
 }
 
@@ -51,8 +43,8 @@ TEST(CentreLine, OfAnOpenTrackRunsWhereBothBoundariesDo) {
 /// The right boundary starts half a lap from the left one.
 TEST(CentreLine, OfARingIsACircleThoughItsBoundariesStartApart) {
     for (const double turn : {1.0, -1.0}) {
-        const auto inner = ring(18, 60, turn > 0 ? 0.0 : 2.5, turn);
-        const auto outer = ring(22, 70, turn > 0 ? 3.0 : 0.0, turn);
+        const auto inner = tests::ring(18, 60, turn > 0 ? 0.0 : 2.5, turn * 2 * kPi);
+        const auto outer = tests::ring(22, 70, turn > 0 ? 3.0 : 0.0, turn * 2 * kPi);
         const TrackBoundaries lane =
             turn > 0 ? TrackBoundaries{inner, outer, true} : TrackBoundaries{outer, inner, true};
         const std::vector<Pose> poses = centre_line_poses(lane, kEvery_m);
@@ -77,9 +69,8 @@ TEST(CentreLine, RefusesWhatIsNoLane) {
         }
         return "no error";
     };
-    for (const double every_m : {0.0, -1.0, 1e-300, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    for (const double every_m : {0.0, -1.0, 1e-300, std::nan(""), std::numeric_limits<double>::infinity()})
         EXPECT_EQ(key_of(straight, every_m), "every_m") << every_m;
-    }
     EXPECT_EQ(key_of(straight, 1000.0), "no error");
     EXPECT_EQ(key_of({{{0, 2}}, straight.right, false}, 1), "left");
     EXPECT_EQ(key_of({straight.left, {}, false}, 1), "right");
@@ -141,9 +132,8 @@ TEST(CentreLine, DoesNotDependOnWhereAClosedBoundaryStarts) {
     std::rotate(both.right.begin(), both.right.begin() + 31, both.right.end());
     const std::vector<Pose> rotated = centre_line_poses(both, kEvery_m);
     ASSERT_EQ(rotated.size(), poses.size());
-    for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (std::size_t i = 0; i < poses.size(); ++i)
         EXPECT_LT((rotated[i].position - poses[i].position).norm(), 0.3) << i;
-    }
 }
 
 TEST(CentreLine, StaysInTheLaneOfEveryRecordedTrack) {

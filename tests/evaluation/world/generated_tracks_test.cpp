@@ -1,15 +1,11 @@
 #include "evaluation/world/generated_tracks.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/world/rounded_path.hpp"
-#include "evaluation/world/track_layouts.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {
-
-using ::testing::Contains;
 
 constexpr std::uint64_t kSeeds = 5;
 
@@ -78,9 +74,8 @@ TEST(TrackLayouts, KeepToTheRulesOnLengthAndCurvature) {
         const RoundedPath path(layout.centre_line, layout.closed);
         EXPECT_GE(path.length_m(), 150);
         EXPECT_LE(path.length_m(), 500);
-        for (double s_m = 0; s_m < path.length_m(); s_m += 0.2) {
+        for (double s_m = 0; s_m < path.length_m(); s_m += 0.2)
             EXPECT_LE(std::abs(path.at(s_m).curvature_1_m), 1 / 4.5);
-        }
         if (layout.closed && path.length_m() >= 200) ++circuits;
         if (layout.stray_cones > 0) ++with_strays;
     }
@@ -104,9 +99,8 @@ TEST(TrackLayouts, SectionsKeepApart) {
 }
 
 TEST(GeneratedTracks, HoldThePapersTopologies) {
-    for (const char* const name : {"straight", "circle", "curvy"}) {
+    for (const char* const name : {"straight", "circle", "curvy"})
         EXPECT_THAT(generated_track_names(), Contains(name));
-    }
     EXPECT_THROW(static_cast<void>(generate_track("oval", 0)), InvalidInput);
 }
 
@@ -218,9 +212,8 @@ TEST(GeneratedTracks, AreWrittenInTenthsOfMillimetresWithDistinctIds) {
         std::set<ConeId> seen;
         for (const Cone& cone : track.cones) {
             EXPECT_TRUE(seen.insert(cone.id).second);
-            for (const double value_m : {cone.position.x(), cone.position.y()}) {
+            for (const double value_m : {cone.position.x(), cone.position.y()})
                 EXPECT_NEAR(value_m * 1e4, std::round(value_m * 1e4), 1e-6);
-            }
         }
         const bool gates = track.name.starts_with("gates");
         for (const auto& [side, color] :

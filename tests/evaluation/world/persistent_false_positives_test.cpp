@@ -7,10 +7,6 @@
 namespace conelane {
 namespace {
 
-using testing::AllOf;
-using testing::Ge;
-using testing::Lt;
-
 /// The false positives of a scene: its cones that are not cones of the track.
 std::vector<Cone> false_positives(const AnnotatedScene& scene, const Track& track) {
     std::vector<Cone> result;

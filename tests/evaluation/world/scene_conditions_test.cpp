@@ -5,10 +5,6 @@
 namespace conelane {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::SizeIs;
-
 TEST(SceneConditions, LapsFollowOneAnotherAndNameTheirCondition) {
     SceneOptions wanted = options({0.0, 0.3}, {15.0, 20.0});
     wanted.conditions = {"car", "paper"};
@@ -118,9 +114,8 @@ TEST(SceneConditions, CarAndHarshHaveTheirDocumentedDisturbances) {
 TEST(SceneConditions, MissedConesAreKeptOnlyWhereAConditionIsNamed) {
     SceneOptions wanted = options({0.0}, {40.0});
     wanted.miss_rate = 0.2;
-    for (const auto& scene : generate(straight(), std::vector<Pose>(20, Pose{{7.0, 0.0}, 0.0}), wanted)) {
+    for (const auto& scene : generate(straight(), std::vector<Pose>(20, Pose{{7.0, 0.0}, 0.0}), wanted))
         EXPECT_THAT(scene.missed, IsEmpty());
-    }
 }
 
 }  // namespace

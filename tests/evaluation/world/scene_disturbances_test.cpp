@@ -7,9 +7,6 @@
 namespace conelane {
 namespace {
 
-using testing::ElementsAre;
-using testing::SizeIs;
-
 TEST(SceneGeneration, RatesGiveTheNumberOfFalsePositives) {
     // Seven points are seen: k / (7 + k) = rate.
     const std::vector<std::pair<double, std::size_t>> expected{{0.0, 0}, {0.1, 1}, {1.0 / 6.0, 1},
@@ -133,9 +130,7 @@ TEST(SceneGeneration, ColorsShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem)
     track.cones[track.left[3]].color = ConeColor::yellow;  // a wrong color in the recording
     SceneOptions wanted = options({0.9}, {15.0});
     const auto colorless = generate(track, {{{7.0, 0.0}, 0.0}}, wanted);
-    for (const Cone& cone : colorless[0].scene.cones) {
-        EXPECT_EQ(cone.color, ConeColor::unknown);
-    }
+    for (const Cone& cone : colorless[0].scene.cones) EXPECT_EQ(cone.color, ConeColor::unknown);
     wanted.with_color = true;
     const auto scenes = generate(track, {{{7.0, 0.0}, 0.0}}, wanted);
     const Lane& lane = *scenes[0].ground_truth;
@@ -202,9 +197,8 @@ TEST(SceneGeneration, ColorErrorsPaintConesOfABoundaryLikeTheOtherOne) {
         count(scenes[i].ground_truth->right, ConeColor::yellow, ConeColor::blue);
         // Everything else is unchanged: the same false positives in the same order.
         ASSERT_EQ(scenes[i].scene.cones.size(), right[i].scene.cones.size());
-        for (std::size_t c = 0; c < right[i].scene.cones.size(); ++c) {
+        for (std::size_t c = 0; c < right[i].scene.cones.size(); ++c)
             EXPECT_EQ(scenes[i].scene.cones[c].position, right[i].scene.cones[c].position);
-        }
     }
     EXPECT_NEAR(wrong / 6000.0, 0.2, 0.02);  // three cones a side in each scene
 }

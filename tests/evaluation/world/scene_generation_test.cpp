@@ -10,13 +10,6 @@
 namespace conelane {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::Ge;
-using testing::IsEmpty;
-using testing::Lt;
-using testing::SizeIs;
-
 TEST(SceneGeneration, WithoutPosesTheCarDrivesTheCentreLine) {
     SceneOptions wanted = options({0.0, 0.3}, {30.0});
     wanted.every_m = 2.0;
@@ -41,9 +34,8 @@ TEST(SceneGeneration, IdsShowRateRangeAndDisturbances) {
     wanted.pose_noise_yaw_rad = 0.05;
     wanted.miss_rate = 0.05;
     wanted.nearest = 12;
-    std::vector<std::string> ids;
-    for (const auto& scene : generate(straight(), {{{30.0, 0.0}, 0.0}}, wanted))
-        ids.push_back(scene.scene.id);
+    const auto ids = mapped(generate(straight(), {{{30.0, 0.0}, 0.0}}, wanted),
+                            [](const auto& scene) { return scene.scene.id; });
     const std::string rest = "/noise_0.1/pose_noise_0.3_0.05/miss_0.05/nearest_12";
     EXPECT_THAT(
         ids, ElementsAre("toy/pose_0000/fp_0.30/range_30" + rest,
@@ -170,7 +162,7 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
              {[](SceneOptions& o) { o.color_unknown_rate = 0.1; }, "color-unknown: needs scenes with colour"},
              {[](SceneOptions& o) { o.threads = 0; }, "threads: must be in [1, 1024]"},
              {[](SceneOptions& o) { o.conditions = {"rain"}; },
-              "condition: 'rain' is not one of paper, car, harsh"},
+              "condition: 'rain' is not one of paper, car, harsh, slam"},
              {[](SceneOptions& o) {
                   o.conditions = {"car", "car"};
               },

@@ -7,13 +7,6 @@
 namespace conelane {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::Ge;
-using testing::IsEmpty;
-using testing::Lt;
-using testing::SizeIs;
-
 /// The index in its boundary of each cone of a run.
 std::vector<std::size_t> places(const AnnotatedScene& scene, const std::vector<ConeId>& run,
                                 const Track& track, const std::vector<std::size_t>& side) {
@@ -65,8 +58,7 @@ TEST(SceneGeneration, AVisibleConeBehindTheFootPointStartsNoRun) {
 }
 
 TEST(SceneGeneration, FarEndsAreEvened) {
-    // The right boundary ends at x = 20. The left cone at x = 25 is 5.8 m from there, the one at x = 30 10.4
-    // m.
+    // The right boundary ends at x = 20. The left cone at x = 25 is 5.8 m from there, that at x = 30 10.4 m.
     const auto scenes = generate(straight(95.0, 20.0), {{{7.0, 0.0}, 0.0}}, options({0.0}, {40.0}));
     ASSERT_THAT(scenes, SizeIs(1));
     EXPECT_THAT(xs(scenes[0], scenes[0].ground_truth->left), ElementsAre(10, 15, 20, 25));
@@ -98,8 +90,7 @@ TEST(SceneGeneration, RunsWrapOnAClosedCourse) {
 
 TEST(SceneGeneration, TheLaneIsClosedWhereBothRunsAreTheWholeBoundary) {
     const Track track = circle();
-    // From (0, -20), looking along +y, everything is ahead; the foot points are at place 9, angle -90
-    // degrees.
+    // From (0, -20), looking along +y, everything is ahead; the feet are at place 9, angle -90 degrees.
     const std::vector<Pose> poses{{{0.0, -20.0}, std::numbers::pi / 2}};
     SceneOptions wanted = options({0.0}, {40.0, 29.0, 25.0});
     const auto scenes = generate(track, poses, wanted);

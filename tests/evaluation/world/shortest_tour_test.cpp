@@ -17,9 +17,8 @@ std::vector<double> random_angles(std::uint64_t seed, double most_rad) {
 }
 
 std::vector<Point> on_ellipse(const std::vector<double>& angles, double across_m) {
-    std::vector<Point> points;
-    for (const double angle : angles) points.emplace_back(30 * std::cos(angle), across_m * std::sin(angle));
-    return points;
+    return mapped(
+        angles, [&](const double angle) { return Point(30 * std::cos(angle), across_m * std::sin(angle)); });
 }
 
 TEST(ShortestTour, FindsTheOrderOfPointsOnAConvexCurve) {
@@ -28,8 +27,8 @@ TEST(ShortestTour, FindsTheOrderOfPointsOnAConvexCurve) {
         std::vector<double> angles = random_angles(seed, 6.28);
         const std::vector<Point> points = on_ellipse(angles, 12);
         std::ranges::sort(angles);
-        std::vector<Point> toured;
-        for (const std::size_t index : shortest_tour(points)) toured.push_back(points[index]);
+        const std::vector<Point> toured =
+            mapped(shortest_tour(points), [&](const std::size_t index) { return points[index]; });
         EXPECT_NEAR(polyline_length_m(toured, true), polyline_length_m(on_ellipse(angles, 12), true), 1e-9);
     }
 }
@@ -45,8 +44,8 @@ TEST(ShortestTour, VisitsEveryPointOnceAndDoesNotCrossItself) {
             points.emplace_back(x, coordinate(generator));
         }
         std::vector<std::size_t> tour = shortest_tour(points);
-        std::vector<Point> toured;
-        for (const std::size_t index : tour) toured.push_back(points[index]);
+        const std::vector<Point> toured =
+            mapped(tour, [&](const std::size_t index) { return points[index]; });
         EXPECT_TRUE(is_simple(toured, true));
         std::ranges::sort(tour);
         std::vector<std::size_t> everyone(points.size());
@@ -60,8 +59,8 @@ TEST(ShortestPath, FindsTheOrderOfPointsAlongABow) {
         SCOPED_TRACE(seed);
         const std::vector<double> angles = random_angles(seed, 4.5);
         const std::vector<Point> points = on_ellipse(angles, 30);
-        std::vector<double> ordered;
-        for (const std::size_t index : shortest_path(points)) ordered.push_back(angles[index]);
+        std::vector<double> ordered =
+            mapped(shortest_path(points), [&](const std::size_t index) { return angles[index]; });
         if (ordered.front() > ordered.back()) std::ranges::reverse(ordered);
         EXPECT_EQ(ordered.size(), angles.size());
         EXPECT_TRUE(std::ranges::is_sorted(ordered));

@@ -7,10 +7,6 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
-
 struct Place {
     std::string condition = "paper";
     std::optional<double> rate = 0.0;
@@ -29,13 +25,12 @@ class Summaries : public testing::Test {
         LaneRecord& record = records_.emplace_back();
         record.detector = method;
         record.nearest = nearest;
-        SceneScore score;
-        score.divergence_known = true;
-        score.latency_ms = latency_ms;
-        score.trained_on = is_trained;
-        score.lane_length_m = 25.0;
-        score.ground_truth_length_m = 25.0;
-        score.category = failure ? Category::none : Category::near_ground_truth;
+        SceneScore score{.category = failure ? Category::none : Category::near_ground_truth,
+                         .lane_length_m = 25.0,
+                         .ground_truth_length_m = 25.0,
+                         .divergence_known = true,
+                         .latency_ms = latency_ms,
+                         .trained_on = is_trained};
         auto scored = std::ranges::find_if(methods_, [&](const ScoredMethod& known) {
             return known.method.name == method && known.method.nearest == nearest;
         });
@@ -124,22 +119,30 @@ TEST_F(Summaries, UnknownMeasuresHaveNoShareAndAreLast) {
 }
 
 TEST_F(Summaries, AMethodThatHasLearnedFromACourseIsMarked) {
-    add("clc", {}, {}, 1.0, {}, true);
+    for (const bool is_trained : {true, false}) add("clc", {}, {}, 1.0, {}, is_trained);
     add("front", {}, {});
     EXPECT_THAT(text(), HasSubstr("clc* "));
     EXPECT_THAT(text(), Not(HasSubstr("front*")));
     EXPECT_THAT(text(), HasSubstr("* with courses that the method has learned from"));
 }
 
-TEST_F(Summaries, ConeSetSizesAreColumns) {
-    for (const std::size_t size : {12U, 8U}) {
-        add("clc", {}, size == 8 ? std::optional(LaneFailure::stopped_early) : std::nullopt,
-            static_cast<double>(size), size);
-        add("rld", {}, {}, 0.5, size);
+TEST_F(Summaries, ConeSetSizesAreColumnsAndAllConesTheLast) {
+    for (const std::optional<std::size_t> size : {std::optional<std::size_t>(), {12U}, {6U}}) {
+        add("rld", {"", 0.3}, {}, size == 12U ? 2.0 : 0.5, size);
+        SceneScore& score = methods_.back().scores.back().score;
+        score.accuracy = Accuracy{true, true, true, size == 6U};
+        score.solved_to_optimality = size == 12U;
+        add("clc", {"", 0.3}, {}, 4.0, size);
     }
-    EXPECT_THAT(lines(text()),
-                testing::IsSupersetOf({"method     n=8  n=12", "rld      100.0 100.0", "clc        0.0 100.0",
-                                       "rld       0.50  0.50", "clc       8.00 12.00"}))
+    EXPECT_THAT(
+        lines(text()),
+        ElementsAre("Each method among the n nearest cones, 30 % false; 3 scenes a method; range 30 m",
+                    "accurate %     n=6  n=12   all", "rld          100.0   0.0   0.0",
+                    "clc              -     -     -", "", "proven %       n=6  n=12   all",
+                    "rld            0.0 100.0   0.0", "clc              -     -     -", "",
+                    "median ms      n=6  n=12   all   growth", "rld           0.50  2.00  0.50    n^2.0",
+                    "clc           4.00  4.00  4.00    n^0.0", "", "p95 ms         n=6  n=12   all",
+                    "rld           0.50  2.00  0.50", "clc           4.00  4.00  4.00", ""))
         << text();
     expect_to_fit(text());
 }

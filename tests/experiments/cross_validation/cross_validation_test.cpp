@@ -7,7 +7,7 @@
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/tuning/parameter_ranges.hpp"
+#include "learning/tuning/parameter_ranges.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/testing.hpp"
 
@@ -16,11 +16,9 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using namespace learning;
 
-/// Two families of one course each, and a course that is always learned from, with as little work as
-/// possible.
+/// Two families of one course each, and a course that is always learned from, with little work.
 const std::string kFolds =
     "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
     "--learn-condition paper --learn-every 60 --variants 0 --evaluations 2 --condition paper --fp 0.3 "
@@ -63,55 +61,6 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 << "checked to be drivable, as in a comparison";
         }
     }
-}
-
-TEST_F(CrossValidation, ResumesAfterAStop) {
-    run_well(kFolds + "clc-paper,delaunay-beam");
-    const std::string net = text_of(path("cv/folds/a/rank_net_paper.json"));
-    const std::string lanes = text_of(path("cv/delaunay-beam.lanes.jsonl"));
-    const auto learned = std::filesystem::last_write_time(path("cv/folds/a/rank_net_paper.json"));
-    std::filesystem::remove(path("cv/folds/b/rank_net_paper.json"));
-    std::filesystem::remove(path("cv/clc-paper.lanes.jsonl"));
-    std::filesystem::remove(path("cv/results.jsonl"));
-    const Outcome again = run_well(kFolds + "clc-paper,delaunay-beam");
-    EXPECT_EQ(std::filesystem::last_write_time(path("cv/folds/a/rank_net_paper.json")), learned);
-    EXPECT_EQ(text_of(path("cv/folds/a/rank_net_paper.json")), net);
-    EXPECT_EQ(text_of(path("cv/delaunay-beam.lanes.jsonl")), lanes) << "not driven again";
-    EXPECT_TRUE(std::filesystem::exists(path("cv/folds/b/rank_net_paper.json")));
-    EXPECT_TRUE(std::filesystem::exists(path("cv/results.jsonl")));
-
-    const Outcome other = run(kFolds + "clc-paper,delaunay-beam --seed 3");
-    EXPECT_EQ(other.exit_code, 2);
-    EXPECT_THAT(other.errors, HasSubstr("--overwrite"));
-    EXPECT_EQ(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "nothing was touched";
-    run_well(kFolds + "clc-paper,delaunay-beam --seed 3 --overwrite");
-    EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "retrained";
-}
-
-TEST_F(CrossValidation, TakesTheLearnedFilesOfAnother) {
-    run_well(kFolds + "delaunay-beam,rld-pair");
-    const std::string again =
-        "cross-validate --family a=generated:circle --family b=generated:curvy --folds cv/folds "
-        "--condition paper --fp 0.3 --range 30 --every 40 --methods delaunay-beam,rld-pair --out ";
-    run_well(again + "again");
-    const std::vector<LaneRecord> learned = read_lanes(path("cv/delaunay-beam.lanes.jsonl"));
-    const std::vector<LaneRecord> taken = read_lanes(path("again/delaunay-beam.lanes.jsonl"));
-    ASSERT_EQ(taken.size(), learned.size());
-    for (std::size_t i = 0; i < taken.size(); ++i) EXPECT_EQ(taken[i].answer.lane, learned[i].answer.lane);
-    EXPECT_FALSE(std::filesystem::exists(path("again/folds"))) << "nothing was learned";
-
-    std::ofstream(path("cv/folds/a/delaunay-beam.json"), std::ios::app) << "\n";
-    const Outcome changed = run(again + "again");
-    EXPECT_EQ(changed.exit_code, 2) << "another file, another run";
-    EXPECT_THAT(changed.errors, HasSubstr("cross_validation"));
-    std::filesystem::remove(path("cv/folds/a/delaunay-beam.json"));
-    const Outcome missing = run(again + "missing");
-    EXPECT_EQ(missing.exit_code, 2);
-    EXPECT_THAT(missing.errors, HasSubstr("delaunay-beam.json"));
-    std::filesystem::remove_all(path("cv/folds/a"));
-    const Outcome without = run(again + "without");
-    EXPECT_EQ(without.exit_code, 2);
-    EXPECT_THAT(without.errors, HasSubstr("--folds"));
 }
 
 TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
@@ -167,36 +116,6 @@ TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
     EXPECT_THAT(refused("--color --methods delaunay-beam"), HasSubstr("delaunay-beam.json"));
     std::filesystem::remove_all(path("cv/folds/b"));
     EXPECT_THAT(refused("--color --methods front --overwrite"), HasSubstr("--colors-from"));
-}
-
-TEST_F(CrossValidation, RefusesInvalidFolds) {
-    const auto errors = [&](const std::string& options) {
-        const Outcome outcome = run("cross-validate --every 40 --methods rld-pair --out cv " + options);
-        EXPECT_EQ(outcome.exit_code, 2) << options;
-        EXPECT_FALSE(std::filesystem::exists(path("cv"))) << options;
-        return outcome.errors;
-    };
-    EXPECT_THAT(errors("--family a=generated:circle"), HasSubstr("two"));
-    EXPECT_THAT(errors("--family a=generated:circle --family b=generated:circle"), HasSubstr("'circle'"));
-    EXPECT_THAT(errors("--family a=generated:circle --family b=generated:curvy --always generated:curvy"),
-                HasSubstr("'curvy'"));
-    EXPECT_THAT(errors("--family generated:circle --family b=generated:curvy"), HasSubstr("NAME=SPEC"));
-    EXPECT_THAT(errors("--family ../a=generated:circle --family b=generated:curvy"), HasSubstr("NAME=SPEC"));
-}
-
-TEST_F(CrossValidation, AComparisonMarksTheCoursesThatADetectorHasLearnedFrom) {
-    ASSERT_TRUE(training_courses("clc").contains("curvy@1"));
-    ASSERT_FALSE(training_courses("clc").contains("circle"));
-    EXPECT_TRUE(training_courses("delaunay-beam").contains("fsd_1"));
-    EXPECT_TRUE(training_courses("astar-lane").contains("fsd_2"));
-    EXPECT_TRUE(training_courses("rld-shape-context").contains("fsd_6"));
-    EXPECT_TRUE(training_courses("rld-pair").empty());
-    EXPECT_TRUE(training_courses("clc-longest").empty());
-    const std::string common = "compare --methods rld-pair,clc --every 60 --fp 0 --out ";
-    const Outcome seen = run_well(common + "seen --tracks generated:curvy@1 generated:circle");
-    EXPECT_THAT(seen.output, HasSubstr("* with courses that the method has learned from"));
-    const Outcome unseen = run(common + "unseen --tracks generated:circle");
-    EXPECT_THAT(unseen.output, Not(HasSubstr("learned from")));
 }
 
 }  // namespace

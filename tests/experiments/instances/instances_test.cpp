@@ -139,7 +139,8 @@ TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
     const std::optional<Instance> instance =
         make_instance(lane_and_ring(), "ring", Formulation::tight, RldParameters{}, 10'000.0);
     ASSERT_TRUE(instance);
-    ASSERT_EQ(instance->optimum.status, KnownOptimum::Status::optimal);
+    ASSERT_TRUE(instance->optimum.is_optimal());
+    EXPECT_FALSE(instance->has_flow);
     const MilpReport report = kClpBb.load(instance->program)->solve({});
     ASSERT_EQ(report.status, SolveStatus::optimal);
     EXPECT_NEAR(*report.bound, *instance->optimum.best, kSameObjective);
@@ -151,6 +152,22 @@ TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
     const MilpReport relaxed = kClpBb.load(bare)->solve({});
     ASSERT_EQ(relaxed.status, SolveStatus::optimal);
     EXPECT_LT(*relaxed.bound, *instance->optimum.best - 1.0);
+}
+
+// The search has no time, so the file has all rows: another engine finds the scene's optimum in it.
+TEST_F(Instances, AFileWithoutAKnownOptimumIsTheWholeProblem) {
+    for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
+        const std::optional<Instance> instance =
+            make_instance(lane_and_ring(), "ring", formulation, RldParameters{}, 1e-6);
+        ASSERT_TRUE(instance);
+        EXPECT_TRUE(instance->has_flow);
+        EXPECT_EQ(instance->optimum.first(), nullptr);
+        const MilpReport report = kCbcMain.load(instance->program)->solve({});
+        ASSERT_EQ(report.status, SolveStatus::optimal);
+        const auto exact = solve_scene(*make_path_pair_solver(), lane_and_ring(), RldParameters{}, {}).report;
+        ASSERT_EQ(exact.status, SolveStatus::optimal);
+        EXPECT_NEAR(report.bound.value(), exact.objective.value(), kSameObjective);
+    }
 }
 
 TEST_F(Instances, AnUnfinishedProgramIsOpen) {
@@ -216,12 +233,13 @@ TEST_F(Instances, EachObjectiveHasProgramsAndLinesInTheIndex) {
     std::ifstream index(path("made") / "index.csv");
     std::string line;
     std::getline(index, line);
-    EXPECT_TRUE(line.starts_with("file,track,condition,")) << line;
+    EXPECT_TRUE(line.starts_with("file,track,split,condition,")) << line;
     EXPECT_TRUE(line.ends_with(",min_cost,mean_cost")) << line;
     const auto columns = std::ranges::count(line, ',');
     std::set<std::string> listed;
     while (std::getline(index, line)) {
         EXPECT_EQ(std::ranges::count(line, ','), columns) << line;
+        EXPECT_THAT(line, HasSubstr(",curvy,tuning,"));
         listed.insert(line.substr(0, line.find(',')));
         const std::string name = line.substr(0, line.find(".mps.gz"));
         EXPECT_EQ((line.find(",shape,") != std::string::npos), (name.find("_shape") != std::string::npos))
@@ -234,18 +252,22 @@ TEST_F(Instances, EachObjectiveHasProgramsAndLinesInTheIndex) {
     EXPECT_EQ(listed, wanted);
 }
 
-TEST_F(Instances, AClassIsAboutBothEngines) {
-    const auto with = [](std::optional<double> path_pair_ms, std::optional<double> milp_ms) {
-        KnownOptimum optimum;
-        optimum.path_pair_ms = path_pair_ms;
-        optimum.milp_ms = milp_ms;
-        return class_of(optimum);
+TEST_F(Instances, AClassIsOfTheBestEngine) {
+    const auto with = [](std::vector<Proof> proofs) {
+        return KnownOptimum{.best = {}, .bound = {}, .proofs = std::move(proofs)};
     };
-    EXPECT_EQ(with(1.0, 900.0), InstanceClass::easy);
-    EXPECT_EQ(with(1.0, 1100.0), InstanceClass::hard);
-    EXPECT_EQ(with(1.0, std::nullopt), InstanceClass::hard);
-    EXPECT_EQ(with(std::nullopt, 1.0), InstanceClass::hard);
-    EXPECT_EQ(with(std::nullopt, std::nullopt), InstanceClass::open);
+    EXPECT_EQ(class_of(with({{"path-pair", 900.0}, {"cbc", 1100.0}})), InstanceClass::easy);
+    EXPECT_EQ(class_of(with({{"cbc", 900.0}})), InstanceClass::easy);
+    EXPECT_EQ(class_of(with({{"path-pair", 1100.0}, {"cbc", 1200.0}})), InstanceClass::hard);
+    EXPECT_EQ(class_of(with({})), InstanceClass::open);
+    EXPECT_EQ(with({{"path-pair", 3.0}, {"cbc", 2.0}}).first()->engine, "cbc");
+}
+
+TEST_F(Instances, CoursesThatWereInViewAreNotHeldOut) {
+    for (const char* track : {"fsd_1", "curvy", "hairpins@3", "pacsim_FSG19", "eufs_comp_2021"})
+        EXPECT_TRUE(is_tuning_course(track)) << track;
+    for (const char* track : {"eufs_track_1", "eufs_bone", "ftlog_skidpad", "curvy_two"})
+        EXPECT_FALSE(is_tuning_course(track)) << track;
 }
 
 TEST_F(Instances, BadOptionsAreRefused) {

@@ -1,5 +1,6 @@
 """library_scripts_test.py ROOT PROGRAM: run_solver.py and check_solutions.py on a small library, with right answers, and with wrong ones of each kind."""
 
+import math
 import os
 import shutil
 import subprocess
@@ -72,6 +73,57 @@ class Scripts(unittest.TestCase):
             check = self.checked(program, os.path.join(ROOT, "experiments", "adapters", commands[program]), "--formulation", "tight")
             self.assertEqual(check.returncode, 0, check.stdout)
             self.assertRegex(check.stdout, r"easy +tight +2 +2 +0 +0 +0 +0 +0 ")
+
+    def test_the_optimum_of_a_file_is_that_of_its_scene(self):
+        """CBC has too little time for an own proof, path-pair has enough: the files have all rows, and CBC's program finds the same optimum."""
+        if not shutil.which("cbc"):
+            self.skipTest("there is no cbc")
+        library, out = os.path.join(self.folder, "short"), os.path.join(self.folder, "cbc_short")
+        subprocess.run([PROGRAM, "instances", "--tracks", "generated:hairpins", "--fp", "0.3", "--range", "30", "--every", "200", "--nearest", "16,all",
+                        "--seed", "7", "--max-printed-cones", "1", "--time-limit", "20", "--out", library], check=True, capture_output=True)
+        rows = check_solutions.index_of(library)
+        flows = [row for row in rows if row["rows"] == "flow" and row["proved_by"] == "path-pair"]
+        self.assertTrue(flows, [row["first_by"] for row in rows])
+        run = script("run_solver.py", library, out, "--limit-s", "60", "--", os.path.join(ROOT, "experiments/adapters/cbc {mps} {sol} {limit_s} {gap} {threads} {seed}"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        answers = check_solutions.answers_of(library, out, check_solutions.known_values(library))
+        for row in flows:
+            self.assertEqual(answers[check_solutions.name_of(row)][0], "proven", answers)
+
+    def test_solvers_confirm_and_refute_each_other(self):
+        def verdicts(*values):
+            answers = [["feasible" if low else "unverified", "", 1.0, 9.0, value] for value, low in values]
+            check_solutions.compare(answers)
+            return [answer[0] for answer in answers]
+        self.assertEqual(verdicts((-2.0, False), (-2.0, False)), ["proven", "proven"])
+        self.assertEqual(verdicts((-2.0, False)), ["unverified"])
+        self.assertEqual(verdicts((-2.0, False), (-3.0, True)), ["wrong", "feasible"])
+        self.assertEqual(verdicts((-2.0, False), (-2.5, False)), ["wrong", "unverified"])
+        self.assertEqual(verdicts((math.inf, False), (-3.0, True)), ["wrong", "feasible"])
+        self.assertEqual(verdicts((-2.0, False), (-2.5, False), (-2.5, False)), ["wrong", "proven", "proven"])
+
+    def test_the_archive_is_whole(self):
+        out, archive = os.path.join(self.folder, "fast"), os.path.join(self.folder, "packed.tar.gz")
+        self.checked("fast", "echo =status= unknown > {sol}")
+        done = subprocess.run([os.path.join(SCRIPTS, "archive"), archive, self.library, out], capture_output=True, text=True, check=False,
+                              env=os.environ | {"CONELANE": PROGRAM})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        shutil.unpack_archive(archive, self.folder)
+        packed = os.path.join(self.folder, "packed")
+        self.assertEqual(subprocess.run(["sha256sum", "--quiet", "-c", "SHA256SUMS"], cwd=packed, check=False).returncode, 0)
+        names = set(os.listdir(os.path.join(packed, "certificates")))
+        self.assertLessEqual({"default_near_far.certificates.jsonl", "shape_near_far.certificates.jsonl"}, names)
+        self.assertEqual(subprocess.run([PROGRAM, "certify", "--verify", os.path.join(packed, "certificates", "default_near_far.certificates.jsonl"),
+                                         "--scenes", os.path.join(packed, "library", "conelane.scenes.jsonl")], capture_output=True, check=False).returncode, 0)
+
+    def test_the_fastest_proof_enters_the_index(self):
+        library = os.path.join(self.folder, "classes")
+        shutil.copytree(self.library, library)
+        name = check_solutions.name_of(check_solutions.index_of(library)[0])
+        check_solutions.write_classes(library, {"quick": {name: ["proven", "", 1e-9, 1.0, -1.0]}, "liar": {name: ["wrong", "", 1e-10, 1.0, -9.0]}})
+        rows = check_solutions.index_of(library)
+        self.assertEqual((rows[0]["first_by"], rows[0]["class"]), ("quick", "easy"))
+        self.assertNotEqual(rows[1]["first_by"], "quick")
 
     def test_wrong_answers_are_found(self):
         for name, command, said in (

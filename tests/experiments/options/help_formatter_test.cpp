@@ -4,9 +4,6 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 TEST(HelpFormatter, TextIsBrokenAtSpacesAndAWordThatIsTooLongBehindAMark) {
     EXPECT_THAT(wrapped("", 5), ElementsAre(""));
     EXPECT_THAT(wrapped("one two", 7), ElementsAre("one two"));

@@ -39,6 +39,19 @@ TEST_F(RaceCommand, MissionsNeedNoTracks) {
     }
 }
 
+TEST_F(RaceCommand, BySafeSpeedFirstAndLaterLapsAreCompared) {
+    run_well(
+        "race --tracks generated:kidney --methods truth --speed safe --laps 2 --condition paper --out out");
+    EXPECT_THAT(text_of(path("out") / "table.txt"),
+                testing::ContainsRegex("truth +0 first +1.000(.|\n)*truth +0 later +1.000"));
+    const nlohmann::json json = nlohmann::json::parse(text_of(path("out") / "race.json"));
+    EXPECT_EQ(json.at("speed_mps"), "safe");
+    EXPECT_GT(json.at("races").at(0).at("later_laps").at("time_s"), 5.0);
+    expect_refused("race --tracks generated:kidney --methods truth --speed fast --out out2",
+                   {"--speed", "safe"});
+    expect_refused("race --tracks generated:kidney --methods truth --fov 200 --out out2", {"--fov"});
+}
+
 // Weights of zeros give other lanes than the shipped ones, so the driven path shows which were used.
 TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
     std::filesystem::create_directories(path("folds") / "a");

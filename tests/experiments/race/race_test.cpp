@@ -4,7 +4,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/world/condition.hpp"
+#include "evaluation/world/scene_options.hpp"
 #include "experiments/race/drivers.hpp"
 #include "tests/support/recorded_tracks.hpp"
 #include "tests/support/testing.hpp"
@@ -41,7 +41,7 @@ TEST(Vehicle, DrivesStraightWithoutSteering) {
 }
 
 TEST(Vehicle, DrivesTheCircleOfItsSteeringAngle) {
-    const VehicleLimits limits;
+    const SteeringLimits limits;
     const double radius_m = 10.0;
     const double angle_rad = std::atan(limits.wheelbase_m / radius_m);
     Vehicle car{{{0.0, 0.0}, 0.0}, angle_rad};
@@ -52,7 +52,7 @@ TEST(Vehicle, DrivesTheCircleOfItsSteeringAngle) {
 }
 
 TEST(Vehicle, SteersNoFasterAndNoFartherThanItsLimits) {
-    const VehicleLimits limits;
+    const SteeringLimits limits;
     Vehicle car;
     double before_rad = 0.0;
     for (int i = 0; i < 100; ++i) {
@@ -223,6 +223,20 @@ TEST(Race, TheTrueLineDrivesAllRecordedCoursesUnderCar) {
     }
 }
 
+TEST(World, AnAngleOfViewHidesWhatIsBesideIt) {
+    SightOptions sight = sight_of("paper", 0.5, true);
+    sight.fov_rad = std::numbers::pi / 2.0;
+    const Pose pose = kidney().line.front();
+    const auto is_seen = [&](const Cone& cone) {
+        return std::abs(pose.left_m(cone.position)) <= pose.ahead_m(cone.position) + 1e-9 &&
+               (cone.position - pose.position).norm() <= 20.0;
+    };
+    const Frame frame = World(kidney(), sight).look(pose, {}, 0.0);
+    EXPECT_TRUE(std::ranges::all_of(frame.cones, is_seen));
+    EXPECT_EQ(frame.cones.size(), 2 * std::ranges::count_if(kidney().cones, is_seen)) << "half are false";
+    EXPECT_GT(frame.cones.size(), 4U);
+}
+
 TEST(Race, WithoutAPathTheCarGoesStraightOnAndDeparts) {
     RaceOptions options = options_of("paper");
     options.keep_replay = true;
@@ -295,6 +309,43 @@ TEST(Race, LapsAreDrivenOneAfterTheOther) {
     EXPECT_NEAR(result.driven_m, 3.0 * kidney().length_m, 2.0);
 }
 
+/// Two laps by the true line, trusted up to `safe_m`, and the largest speed.
+std::pair<RaceResult, double> race_by_safe(double safe_m) {
+    RaceOptions options = options_of("paper");
+    options.laps = 2;
+    options.by_safe = true;
+    options.keep_replay = true;
+    RaceResult result =
+        race(kidney(), options, [&, truth = truth_driver(kidney(), 2, 60.0)](const Frame& frame) {
+            Drive drive = truth(frame);
+            drive.safe_m = safe_m;
+            return drive;
+        });
+    double fastest_mps = 0.0;
+    for (std::size_t i = 1; i < result.replay.size(); ++i) {
+        const Point way = result.replay[i].pose.position - result.replay[i - 1].pose.position;
+        fastest_mps = std::max(fastest_mps, way.norm() / 0.1);
+    }
+    return {std::move(result), fastest_mps};
+}
+
+TEST(Race, BySafeSpeedTheCarCanStopWhereTheTrustEndsAndLapsAreCountedApart) {
+    const auto [far, far_mps] = race_by_safe(1000.0);
+    const auto [near, near_mps] = race_by_safe(2.9);
+    EXPECT_GT(far_mps, 9.0);
+    EXPECT_NEAR(near_mps, std::sqrt(2.0 * 6.0 * 2.9), 1.0);
+    EXPECT_NEAR(race_by_safe(0.0).second, 1.5, 0.01) << "it creeps";
+    EXPECT_NEAR(far.by_lap[0].time_s + far.by_lap[1].time_s, far.time_s, 0.02);
+    EXPECT_LT(far.by_lap[1].time_s, far.by_lap[0].time_s) << "no start from rest";
+    for (const std::size_t later : {0U, 1U}) {
+        EXPECT_EQ(far.by_lap[later].laps, 1) << later;
+        EXPECT_EQ(far.by_lap[later].short_frames + far.by_lap[later].wrong_trusted, 0);
+        EXPECT_LT(far.by_lap[later].sideways_p95_m.value(), 0.02);
+        EXPECT_EQ(near.by_lap[later].short_frames, near.by_lap[later].frames);
+        EXPECT_EQ(near.by_lap[later].right_untrusted, near.by_lap[later].frames);
+    }
+}
+
 TEST(Race, LatePathsAreOldPaths) {
     RaceOptions options = options_of("paper");
     options.latency_s = 0.25;
@@ -321,9 +372,11 @@ TEST(Race, AWrongPathCountsUnlessItIsSaidToBeOld) {
             drive.path = {frame.pose.position, frame.pose.position + 9.0 * Point(-frame.pose.heading().y(),
                                                                                  frame.pose.heading().x())};
             drive.is_flagged = is_flagged;
+            drive.safe_m = is_flagged ? 1.0 : 9.0;
             return drive;
         });
         EXPECT_EQ(result.wrong_unflagged > 0, !is_flagged);
+        EXPECT_EQ(result.by_lap[0].wrong_trusted > 0, !is_flagged) << "within its trust";
     }
 }
 
@@ -536,7 +589,7 @@ TEST(Drivers, UnknownNamesAreRefused) {
     EXPECT_THROW(static_cast<void>(racers({"front,front"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(racers({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(racers({"exec:a=b"}, WithPlanner::only)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(racers({"clc-longest"}, WithPlanner::only)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(racers({"no-method"}, WithPlanner::only)), InvalidInput);
     const std::vector<Racer> both = racers({"truth,front"}, WithPlanner::both);
     ASSERT_EQ(both.size(), 3U);
     EXPECT_EQ(both[2].name, "front+planner");

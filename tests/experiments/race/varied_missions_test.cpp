@@ -1,7 +1,7 @@
 // Acceleration and skidpad in the variants that events may set up, and whole races with the planner on them.
 
 #include "conelane/planner.hpp"
-#include "evaluation/world/condition.hpp"
+#include "evaluation/world/scene_options.hpp"
 #include "evaluation/world/track.hpp"
 #include "experiments/race/course.hpp"
 #include "experiments/race/drivers.hpp"

@@ -65,12 +65,6 @@ class Measures(unittest.TestCase):
         self.assertAlmostEqual(low, 2.0)
         self.assertAlmostEqual(high, 8.0)
 
-    def test_profile_counts_failures_against_all(self):
-        times = np.array([[1.0, 2.0], [4.0, 1.0], [np.inf, 3.0], [np.inf, np.inf]])
-        ratios = measures.performance_profiles(times)
-        self.assertEqual(ratios[:, 0].tolist(), [1.0, 4.0, np.inf, np.inf])
-        self.assertEqual(ratios[:, 1].tolist(), [1.0, 1.0, 2.0, np.inf])
-
 
 if __name__ == "__main__":
     unittest.main()

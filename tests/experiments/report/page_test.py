@@ -19,8 +19,6 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from report.methods import described  # noqa: E402  (the package of the page lies there)
 
 PROGRAM, RESULTS = sys.argv[1:3]
-# Google Benchmark may be missing where this was built.
-BENCHMARKED = os.path.exists(os.path.join(RESULTS, "benchmarks.json"))
 VOID = {"meta", "link", "input", "br"}
 
 
@@ -146,19 +144,19 @@ class ReportPage(unittest.TestCase):
     def test_has_every_figure_or_says_why_not(self):
         for name in ("headline", "by-rate", "methods", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
                      "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
-                     "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start", "anytime-shares", "anytime-gap",
+                     "latency-by-rate", "optimality", "optimality-gaps", "engine-times", "solver-measures", "solver-profile-6", "warm-start",
                      "growth-size", "growth-density", "race-finished", "race-table", "race-replay",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
-                     "rld-fig-7-circle", "confidence-and-colour", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
-                     "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
+                     "rld-fig-7-circle", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
+                     "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios"):
             self.assertTrue(name in self.page.ids, name)
         absent = "".join(re.findall(r'<div class="absent">(.*?)</div>', self.text, flags=re.S))
         self.assertEqual(re.findall(r"<b>(.*?)</b>", absent),
-                         ["Confidence and trusted length", "Methods from outside"] + ["Update against rebuild"] * (not BENCHMARKED))
+                         ["Confidence and trusted length", "Methods from outside"])
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
-        self.assertEqual(len(articles), 29 + BENCHMARKED)
+        self.assertEqual(len(articles), 25)
         for article in articles:
             self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
             self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
@@ -253,7 +251,7 @@ class ReportPage(unittest.TestCase):
             self.assertEqual(" ended the search, which would have taken longer." in text, limit_ms == longest)
 
     def test_every_method_of_the_program_is_explained(self):
-        listed = subprocess.run([PROGRAM, "methods", "--all"], capture_output=True, text=True, check=True).stdout
+        listed = subprocess.run([PROGRAM, "methods"], capture_output=True, text=True, check=True).stdout
         names = [line.split()[0] for line in listed.splitlines()]
         self.assertGreater(len(names), 10)
         for name in names:
@@ -285,13 +283,13 @@ class ReportPage(unittest.TestCase):
         text = self.made_of_copy(lambda copy: write("".join(json.dumps(line) + "\n" for line in stored + [
             line | {"nearest": 0} for line in stored]), copy, "backends.jsonl"))
         ids = Page(text).ids
-        for name in ("backends-profile", "solver-profile", "solver-primal-gap", "solver-dual-gap"):
+        for name in ("solver-profile", "solver-primal-gap", "solver-dual-gap"):
             self.assertTrue({f"{name}-6", f"{name}-all"} <= set(ids), name)
         measures = next(one for one in re.findall(r'<article class="experiment.*?</article>', text, flags=re.S) if "<h3>Measures of solvers</h3>" in one)
         summaries = [line for line in stored if line.get("row") == "summary"]
         for group in {f"all {line.get('condition', '')}".strip() for line in summaries}:
             self.assertGreaterEqual(len(re.findall(rf">{group}</t[dh]>", measures)), 2, group)
-        for title in ("geometric mean ms", "PAR 1 ms", "PAR 2 ms", "PAR 10 ms", "variation %", "primal integral ms", "dual integral ms",
+        for title in ("geometric mean ms", "PAR 10 ms", "adds to the virtual best, ms", "variation %", "primal integral ms", "dual integral ms",
                       "peak MiB", "p, Holm", "coefficient of variation"):
             self.assertIn(title, measures)
         for block in (line for line in stored if line.get("row") == "block"):
@@ -348,7 +346,7 @@ class ReportPage(unittest.TestCase):
                 done = report(RESULTS, again, "--png", pictures)
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
                 self.assertEqual(read(again), self.text)
-                self.assertEqual(sorted(os.listdir(pictures)), ["growth.png", "iou.png", "latency.png", "success.png", "usable.png"])
+                self.assertEqual(sorted(os.listdir(pictures)), ["engines.png", "growth.png", "iou.png", "latency.png", "success.png", "usable.png"])
                 seen.append({})
                 for picture in os.listdir(pictures):
                     with open(os.path.join(pictures, picture), "rb") as stream:
@@ -395,12 +393,8 @@ class ReportPage(unittest.TestCase):
             write("".join(whole), copy, "scores.jsonl")
             for name, text, complaint in (("optimality.jsonl", '{"scene": "a"}\n', "optimality.jsonl:1: track: "),
                                           ("backends.jsonl", "[]\n", "backends.jsonl:1: "),
-                                          ("anytime.jsonl", '{"scene": "a"}\n', "anytime.jsonl:1: limit_ms"),
                                           ("growth.jsonl", '{"cones": 6}\n', "growth.jsonl:1: all_visible"),
                                           ("formulations.jsonl", '{"cones": 6}\n', "formulations.jsonl:1: formulation"),
-                                          ("relaxations.jsonl", '{"cones": 6}\n', "relaxations.jsonl:1: solver"),
-                                          ("confidence-and-colour.jsonl", '{"known": "a"}\n', "confidence-and-colour.jsonl:1: false_positive_rate"),
-                                          ("benchmarks.json", '{"benchmarks": [{}]}', "benchmarks.json"),
                                           ("race/race.json", "{", "race.json: "), ("race/race.json", "{}", "race.json: races"),
                                           ("race/race.json", '{"races": [{}]}', "races[0].track"),
                                           ("race/replay.jsonl", '{"frames": 1}\n', "replay.jsonl:1: frames")):
@@ -482,7 +476,6 @@ class ReportPage(unittest.TestCase):
     def test_runs_points_and_centre_lines_have_no_overlap(self):
         with tempfile.TemporaryDirectory() as folder:
             card = {"outside": "exec", "self_timed_ms": {"median": 3.25, "p95": 8.5},
-                    "echo_floor_ms": {"median": 0.04, "p95": 0.06},
                     "card": {"name": "Points", "licence": "MIT", "colour_used": False, "training_courses": ["one"]}}
             text, data = self.made_of(folder, Setup(methods=("ids", "points", "line"), points=("points",),
                                                     centre_lines=("line",), runs=("run",), outside={"points": card},
@@ -509,7 +502,7 @@ class ReportPage(unittest.TestCase):
             self.assertEqual(part(text, "table", "calibration-table").count(">99.50<"), 12)  # right where trusted: three methods, conditions and rates
             self.assertEqual(part(text, "table", "by-track").count("<small>trained</small>"), 2)  # one course in two conditions
             self.assertEqual(part(text, "table", "headline").count("*</td>"), 1)  # one method
-            self.assertRegex(text, r'<div class="table" id="outside">.*?<td[^>]*>MIT</td>.*?>3\.25<.*?>0\.04<')
+            self.assertRegex(text, r'<div class="table" id="outside">.*?<td[^>]*>MIT</td>.*?>3\.25<.*?>8\.50<')
 
     def test_results_of_earlier_versions_still_make_a_page(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -561,14 +554,16 @@ class ReportPage(unittest.TestCase):
                     text = stream.read()
                 made = Page(text)
                 self.assertEqual((made.wrong, made.open, made.outside), ([], [], []))
-                self.assertLessEqual({"exactness", "protocol", "backends", "solver-measures"}, set(made.ids))
+                self.assertLessEqual({"exactness", "protocol", "engine-times", "solver-measures"}, set(made.ids))
+                self.assertLess(text.index('id="engine-times"'), text.index('id="exactness"'))
+                self.assertEqual(os.listdir(os.path.join(folder, "pictures")), ["engines.png"])
                 self.assertNotIn("comparison", made.ids)
             self.assertIn("By the number of cones", text)
 
     def test_without_scenes_it_says_so(self):
         def strip(copy):
-            for name in ("scenes.scenes.jsonl", "optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl", "anytime.jsonl",
-                         "growth.jsonl", "confidence-and-colour.jsonl") + ("benchmarks.json",) * BENCHMARKED:
+            for name in ("scenes.scenes.jsonl", "optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl",
+                         "growth.jsonl"):
                 os.unlink(os.path.join(copy, name))
             for name in ("sweep", "race"):
                 shutil.rmtree(os.path.join(copy, name))
@@ -576,9 +571,7 @@ class ReportPage(unittest.TestCase):
         self.assertIn("the results hold no scenes.scenes.jsonl", text)
         for complaint in ("there is no sweep over cone-set sizes.", "there is no optimality.jsonl.",
                           "there is no backends.jsonl.", "there is no formulations.jsonl.",
-                          "there is no anytime.jsonl.", "there is no growth.jsonl.",
-                          "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
-                          "there is no benchmarks.json.", "there is no race/race.json."):
+                          "there is no growth.jsonl.", "there is no relaxations.jsonl.", "there is no race/race.json."):
             self.assertIn(complaint, text)
         self.assertIn("<code>conelane compare --by-size --out RESULTS/sweep</code>", text)
         self.assertEqual(Page(text).wrong, [])

@@ -1,26 +1,20 @@
-// The evaluation of rows in the study of backends: refuted claims, permutations, measures, ASlib.
+// The evaluation of rows in the study of backends: refuted claims, permutations, measures.
 
 #include "experiments/studies/backend_measures.hpp"
 
 #include "evaluation/formats/scene_set.hpp"
-#include "experiments/studies/aslib.hpp"
 #include "experiments/studies/machine.hpp"
-#include "tests/support/file_test.hpp"
 #include "tests/support/straight_scene.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 constexpr double kLimit_ms = 100.0;
 
 SolveRow row_of(const AnnotatedScene& scene, const std::string& solver, SolveStatus status,
                 std::optional<double> objective, double latency_ms, std::size_t permutation = 0) {
-    SolveRow row;
-    row.scene = &scene;
+    SolveRow row{.scene = &scene};
     row.cones = row.size = 6;
     row.backend = Backend{solver};
     row.status = status;
@@ -32,9 +26,10 @@ SolveRow row_of(const AnnotatedScene& scene, const std::string& solver, SolveSta
 }
 
 /// The measures of this kind.
-std::vector<Json> rows_of_kind(const std::string& kind, const std::vector<SolveRow>& rows) {
+std::vector<Json> rows_of_kind(const std::string& kind, const std::vector<SolveRow>& rows,
+                               const std::string& reference = {}) {
     StudyResult result;
-    add_measures(result, {rows, {}}, kLimit_ms);
+    add_measures(result, {rows, {}}, kLimit_ms, reference);
     std::erase_if(result.rows, [&](const Json& row) { return row.at("row") != kind; });
     return result.rows;
 }
@@ -76,7 +71,8 @@ TEST(RefutedClaims, AndErrorsCountInEveryOrder) {
 
 /// Two backends on two scenes in two orders; "b" fails once and is refuted once.
 TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
-    const std::vector<AnnotatedScene> scenes(2, straight_scene());
+    std::vector<AnnotatedScene> scenes(2, straight_scene());
+    scenes[1].track = "another course";
     using Status = SolveStatus;
     std::vector<SolveRow> rows;
     for (const std::size_t order : {0, 1}) {
@@ -101,11 +97,15 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     EXPECT_EQ(b.at("refuted"), 1U);
     EXPECT_NEAR(a.at("geometric_ms"), std::pow(3.0 * 5.0 * 5.0 * 5.0, 0.25) - 1.0, 1e-9);
     EXPECT_NEAR(b.at("geometric_ms"), std::pow(2.0 * 2.0 * 101.0 * 101.0, 0.25) - 1.0, 1e-9);
-    EXPECT_DOUBLE_EQ(b.at("par1_ms"), (1.0 + 1.0 + 100.0 + 100.0) / 4.0);
-    EXPECT_DOUBLE_EQ(b.at("par2_ms"), (1.0 + 1.0 + 200.0 + 200.0) / 4.0);
     EXPECT_DOUBLE_EQ(b.at("par10_ms"), (1.0 + 1.0 + 1000.0 + 1000.0) / 4.0);
-    EXPECT_EQ(a.at("common"), 2U);
-    EXPECT_NEAR(a.at("common_geometric_ms"), std::sqrt(3.0 * 5.0) - 1.0, 1e-9);
+    const auto expect_interval = [](const Json& interval, double low, double high) {
+        EXPECT_NEAR(interval[0], low, 1e-9);
+        EXPECT_NEAR(interval[1], high, 1e-9);
+    };
+    expect_interval(a.at("geometric_ms_interval"), std::sqrt(3.0 * 5.0) - 1.0, 4.0);
+    expect_interval(b.at("par10_ms_interval"), 1.0, 1000.0);
+    EXPECT_DOUBLE_EQ(a.at("contribution_ms"), 500.5 - 2.5);  // without it only "b" is left
+    EXPECT_DOUBLE_EQ(b.at("contribution_ms"), 3.5 - 2.5);
     EXPECT_EQ(a.at("won"), 2U);
     EXPECT_EQ(b.at("won"), 2U);
     // Scene 0: 2 and 4 ms; scene 1: 4, 4 and 1 ms.
@@ -118,8 +118,12 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     EXPECT_DOUBLE_EQ(a.at("profile").back(), 1.0);
     const std::vector<Json> pairs = rows_of_kind("pair", rows);
     ASSERT_EQ(pairs.size(), 1U);
-    EXPECT_EQ(pairs[0].at("scenes"), 2U);
-    EXPECT_NEAR(pairs[0].at("ratio"), std::pow(2.0 * 4.0 * 4.0 * 4.0 / (100.0 * 100.0), 0.25), 1e-9);
+    EXPECT_EQ(pairs[0].at("courses"), 2U);
+    EXPECT_EQ(pairs[0].at("second"), "a");
+    EXPECT_NEAR(pairs[0].at("ratio"), std::pow(100.0 * 100.0 / (2.0 * 4.0 * 4.0 * 4.0), 0.25), 1e-9);
+    expect_interval(pairs[0].at("ratio_interval"), std::sqrt(1.0 / 8.0), 25.0);
+    EXPECT_DOUBLE_EQ(pairs[0].at("p_value"), 1.0) << "one course for each of them";
+    EXPECT_EQ(rows_of_kind("pair", rows, "b")[0].at("first"), "a");
     const std::vector<Json> selections = rows_of_kind("selection", rows);
     ASSERT_EQ(selections.size(), 1U);
     EXPECT_EQ(selections[0].at("single_best"), "a");
@@ -131,10 +135,7 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
 }
 
 SceneSet some_scenes() {
-    SceneOptions options;
-    options.false_positive_rates = {0.3};
-    options.ranges_m = {25.0};
-    options.every_m = 40.0;
+    SceneOptions options{.false_positive_rates = {0.3}, .ranges_m = {25.0}, .every_m = 40.0};
     return make_scene_set({"generated:kidney", "generated:straight"}, options);
 }
 
@@ -145,7 +146,8 @@ TEST(Permutations, DoNotChangeAnOptimum) {
     options.permutations = 2;
     options.gap_limits_ms = {0.1, 1.0};
     options.backends = {backend_of("path-pair"), backend_of("cbc"), backend_of("cbc-main"),
-                        backend_of("clp-bb/paper")};
+                        backend_of("clp-bb/paper"), backend_of("cbc")};
+    options.backends.back().all_rows = true;
     SolveResults results = solve_scenes(set.scenes, options);
     mark_refuted_claims(results.rows);
     std::map<const AnnotatedScene*, double> optimum;
@@ -160,38 +162,17 @@ TEST(Permutations, DoNotChangeAnOptimum) {
     }
     EXPECT_EQ(orders.size(), 3U);
     EXPECT_EQ(orders[1], orders[0]);
-    ASSERT_EQ(results.blocks.size(), 4U);
+    std::vector<std::string> treatments;
     for (const SolveBlock& block : results.blocks) {
         EXPECT_GT(block.reference_ms, 0.0);
         EXPECT_FALSE(block.version.empty());
+        treatments.push_back(block.treatment);
     }
-}
-
-class AslibScenario : public FileTest {};
-
-TEST_F(AslibScenario, HasEveryRunAndInstance) {
-    const SceneSet set = some_scenes();
-    SolveOptions options;
-    options.sizes = {8};
-    options.permutations = 1;
-    options.backends = {backend_of("path-pair"), backend_of("clp-bb")};
-    const std::vector<SolveRow> rows = solve_scenes(set.scenes, options).rows;
-    write_aslib_scenario(path("aslib"), rows, options);
-    const auto data_lines = [&](const std::string& name) {
-        const std::string text = text_of(path("aslib") / name);
-        const std::size_t data = text.find("@DATA\n");
-        EXPECT_NE(data, std::string::npos) << name;
-        return static_cast<std::size_t>(
-                   std::count(text.begin() + static_cast<std::ptrdiff_t>(data), text.end(), '\n')) -
-               1;
-    };
-    EXPECT_EQ(data_lines("algorithm_runs.arff"), rows.size());
-    const std::size_t instances = rows.size() / 4;
-    for (const char* name :
-         {"feature_values.arff", "feature_runstatus.arff", "feature_costs.arff", "cv.arff"})
-        EXPECT_EQ(data_lines(name), instances) << name;
-    EXPECT_THAT(text_of(path("aslib") / "description.txt"), HasSubstr("'clp-bb/tight':"));
-    EXPECT_THAT(text_of(path("aslib") / "algorithm_runs.arff"), HasSubstr(" n=8',2,'path-pair',"));
+    EXPECT_THAT(treatments, testing::ElementsAre("no program; no start",
+                                                 "tight rows, on demand; settings: tuned; no start",
+                                                 "tight rows, on demand; settings: defaults; no start",
+                                                 "printed rows, on demand; settings: tuned; no start",
+                                                 "tight rows, all; settings: tuned; no start"));
 }
 
 TEST(PeakMemory, SeesWhatIsAllocatedAndFreed) {

@@ -14,9 +14,8 @@ namespace {
 
 /// (29), shape costs, and learned costs with edges over gaps.
 std::vector<RldParameters> objectives(std::uint64_t seed) {
-    RldParameters learned;
-    learned.d_gap = 9.0;
-    learned.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 3);
+    RldParameters learned{.d_gap = 9.0,
+                          .learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 3)};
     return {RldParameters{}, with_shape_costs({}), learned};
 }
 

@@ -3,8 +3,6 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/relaxation_solvers.hpp"
 #include "evaluation/formats/scene_set.hpp"
-#include "experiments/instances/instance_features.hpp"
-#include "experiments/studies/noise.hpp"
 #include "experiments/studies/solve_rows.hpp"
 #include "experiments/studies/study.hpp"
 #include "solvers/registry.hpp"
@@ -15,18 +13,12 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 SceneSet straight_set(std::size_t scenes = 1) {
     return {std::vector<AnnotatedScene>(scenes, straight_scene()), {}};
 }
 
 SceneSet scenes_of(const std::vector<std::string>& tracks, double rate, double every_m) {
-    SceneOptions options;
-    options.false_positive_rates = {rate};
-    options.ranges_m = {30.0};
-    options.every_m = every_m;
+    SceneOptions options{.false_positive_rates = {rate}, .ranges_m = {30.0}, .every_m = every_m};
     return make_scene_set(tracks, options);
 }
 
@@ -77,9 +69,8 @@ TEST(RowFields, MakeFileTableAndStatisticsOfGroups) {
                                                {"known", share_of(&Fruit::mass_kg)},
                                                {"mean_kg", mean_of(&Fruit::mass_kg)},
                                                {"most_kg", quantile_of(&Fruit::mass_kg, 1.0)}};
-    std::vector<std::string> lines;
-    for (const auto& group : groups_of<Fruit>(fruits, [](const Fruit& fruit) { return fruit.kind; }))
-        lines.push_back(row_json(group, of_groups).dump());
+    const auto lines = mapped(groups_of<Fruit>(fruits, [](const Fruit& fruit) { return fruit.kind; }),
+                              [&](const auto& group) { return row_json(group, of_groups).dump(); });
     EXPECT_THAT(lines, ElementsAre(R"({"kind":"pear","count":2,"known":1.0,"mean_kg":0.5,"most_kg":0.75})",
                                    R"({"kind":"plum","count":1,"known":0.0})"));
 }
@@ -88,9 +79,8 @@ TEST(SolveRows, AreSpreadEvenlyOverTheScenesThatHaveTheCones) {
     const SceneSet set = straight_set(10);  // 20 cones each
     SolveOptions options{.backends = {Backend{"path-pair"}}, .sizes = {20, 21, 6}};
     options.limit = 3;
-    std::vector<std::pair<std::size_t, const AnnotatedScene*>> solved;
-    for (const SolveRow& row : solve_scenes(set.scenes, options).rows)
-        solved.emplace_back(row.size, row.scene);
+    const auto solved = mapped(solve_scenes(set.scenes, options).rows,
+                               [](const SolveRow& row) { return std::pair(row.size, row.scene); });
     const AnnotatedScene* const first = set.scenes.data();
     using Solved = std::pair<std::size_t, const AnnotatedScene*>;
     EXPECT_THAT(solved, ElementsAre(Solved(20, first), Solved(20, first + 3), Solved(20, first + 6),
@@ -103,9 +93,11 @@ TEST(Backends, HaveNamesWithAndWithoutAFormulation) {
     EXPECT_EQ(backend_of("path-pair").label(), "path-pair");
     EXPECT_EQ(backend_of("cbc").label(), "cbc/tight");
     EXPECT_EQ(backend_of("cbc/paper").label(), "cbc/paper");
-    for (const char* bad : {"magic", "lp-rounding", "path-pair/tight", "cbc/", "cbc/loose", "/tight", ""}) {
+    EXPECT_EQ(backend_of("cbc/all-rows").label(), "cbc/tight whole");
+    EXPECT_EQ(backend_of("exec:a/paper/all-rows=run b/all-rows").label(), "a/paper whole");
+    for (const char* bad : {"magic", "lp-rounding", "path-pair/tight", "cbc/", "cbc/loose", "/tight", "",
+                            "path-pair/all-rows", "cbc/all-rows/tight", "/all-rows"})
         EXPECT_THROW((void)backend_of(bad), InvalidInput) << bad;
-    }
 }
 
 TEST(Backends, SolveOnlyTheSizesThatTheyTake) {
@@ -162,36 +154,6 @@ TEST(Backends, AgreeWithAndWithoutAStart) {
     EXPECT_EQ(labels.size(), options.backends.size());
     EXPECT_TRUE(labels.contains("path-pair"));
     EXPECT_TRUE(labels.contains("cbc-main/paper warm"));
-}
-
-/// What is proven stays proven; the gap is from the bound to the best lane graph known, relative to 1 at
-/// least.
-TEST(Anytime, KnowsMoreUnderLongerLimits) {
-    SceneSet set = scenes_of({"generated:kidney"}, 0.5, 40.0);
-    const StudyResult result = measured("anytime", "--limits 0.1,0.3,5000 --limit 4", set);
-    ASSERT_EQ(result.rows.size(), 12U);
-    std::size_t open = 0;
-    for (std::size_t k = 0; k < result.rows.size(); ++k) {
-        const Json& row = result.rows[k];
-        SCOPED_TRACE(row.dump());
-        EXPECT_EQ(row["limit_ms"], (std::vector{0.1, 0.3, 5000.0}[k % 3]));
-        EXPECT_EQ(row["scene"], set.scenes[k / 3 * set.scenes.size() / 4].scene.id);
-        EXPECT_TRUE(k % 3 == 0 || row["proven"] >= result.rows[k - 1]["proven"]);
-        EXPECT_TRUE(k % 3 < 2 || row["proven"] == true);
-        EXPECT_EQ(row["best_known"], result.rows[k / 3 * 3 + 2]["objective"]);
-        if (row["proven"] == true) {
-            EXPECT_EQ(row["gap"], 0.0);
-        } else if (row.contains("bound")) {
-            ++open;
-            const double best = row["best_known"], bound = row["bound"];
-            EXPECT_DOUBLE_EQ(row["gap"], (best - bound) / std::max(1.0, std::abs(best)));
-        } else {
-            EXPECT_FALSE(row.contains("gap"));
-        }
-    }
-    EXPECT_GT(open, 0U);
-    EXPECT_THAT(result.table, testing::ContainsRegex("\n +5000 +4 +100.0 +0 +100.0 +- +- +-\n"));
-    EXPECT_THROW((void)measured("anytime", "--limits 10,10", straight_set()), InvalidInput);
 }
 
 /// A cone every 4 m on both sides of a lane of 3.5 m: each has the one across, those of the ends one
@@ -274,64 +236,6 @@ TEST(Relaxations, AreAccurateWithoutFalseCones) {
     }
 }
 
-/// A straight lane of 20 cones, 4 m apart along and 3.5 m across: its 18 edges along, 10 across, and some
-/// diagonals; the relaxation is no better than the optimum.
-TEST(Features, CountAndBound) {
-    const StudyResult result = measured("features", "--sizes 20 --time-limit 60000", straight_set());
-    ASSERT_EQ(result.rows.size(), 1U);
-    const Json& row = result.rows[0];
-    const double edges = row["edges"];
-    EXPECT_EQ(row["cones"], 20.0);
-    EXPECT_GE(edges, 28.0);
-    EXPECT_DOUBLE_EQ(row["edge_density"], edges / 190.0);
-    EXPECT_DOUBLE_EQ(row["mean_degree"], edges / 10.0);
-    EXPECT_GE(row["lp_gap"], 0.0);
-    EXPECT_LE(row["lp_degenerate"], 1.0);
-    EXPECT_EQ(std::string(named({})[kProblemFeatures].name), "columns");
-    EXPECT_THAT(result.table, HasSubstr("LP gap"));
-}
-
-TEST(Noise, ScenesAreDrawnInTheHalfDiscBySeedRangeAndNumber) {
-    std::set<double> drawn;
-    for (std::size_t index = 0; index < 50; ++index) {
-        const Scene scene = noise_scene(16, 30.0, index, 1);
-        ASSERT_EQ(scene.cones.size(), 16U);
-        EXPECT_NO_THROW(validate(scene));
-        for (const Cone& cone : scene.cones) {
-            EXPECT_GE(cone.position.x(), 0.0);
-            EXPECT_LE(cone.position.norm(), 30.0);
-            EXPECT_TRUE(drawn.insert(cone.position.x()).second);
-        }
-        EXPECT_EQ(noise_scene(16, 30.0, index, 1).cones[7].position, scene.cones[7].position);
-    }
-    EXPECT_NE(noise_scene(16, 30.0, 3, 2).cones[0].position, noise_scene(16, 30.0, 3, 1).cones[0].position);
-}
-
-/// Of 16 false cones and no course, a lane may be claimed in 5 % of the scenes.
-TEST(Noise, FrontSeldomClaimsALane) {
-    for (const Json& row : measured("noise", "--scenes 200 --range 30,50").rows) {
-        SCOPED_TRACE(row.dump());
-        EXPECT_EQ(row["scenes"], 200U);
-        EXPECT_LE(row["claimed"].get<int>() + row["unrated"].get<int>(), row["found"].get<int>());
-        EXPECT_LE(row["claimed"], 10U);
-        EXPECT_LE(row["trusted_10_m"], 2U);
-    }
-}
-
-TEST(Noise, CountsLanesWithoutAConfidenceApart) {
-    EXPECT_THROW((void)measured("noise", "--methods nearest"), InvalidInput);
-    EXPECT_THROW((void)measured("noise", "--range 0"), CLI::ValidationError);
-    std::size_t found = 0;
-    for (const Json& row :
-         measured("noise", "--methods delaunay-beam,clc --cones 40 --range 20 --scenes 40").rows) {
-        found += row["found"].get<std::size_t>();
-        EXPECT_EQ(row["unrated"], row["found"]);
-        EXPECT_EQ(row["claimed"], 0U);
-        EXPECT_EQ(row["max_confidence"], 0.0);
-    }
-    EXPECT_GT(found, 0U);
-}
-
 TEST(FrontBeam, AWiderBeamMeetsTheBestLaneAtLeastAsOften) {
     const SceneSet set = scenes_of({"generated:kidney@3"}, 0.4, 12.0);
     const StudyResult result = measured("front-beam", "--beams 1,15 --reference-beam 200", set);
@@ -358,11 +262,7 @@ TEST(FrontBeam, AWiderBeamMeetsTheBestLaneAtLeastAsOften) {
 
 // Eight cones have few lanes, so a complete search ends; within a millionth of a second, no search ends.
 TEST(FrontBeam, AProofTakesASearchThatLeavesNothingOut) {
-    SceneOptions options;
-    options.false_positive_rates = {0.0};
-    options.ranges_m = {30.0};
-    options.every_m = 40.0;
-    options.nearest = 8;
+    SceneOptions options{.false_positive_rates = {0.0}, .ranges_m = {30.0}, .every_m = 40.0, .nearest = 8};
     const std::vector<Json> rows = measured("front-beam", "--beams 1 --exhaustive 0.000001,1000000",
                                             make_scene_set({"generated:kidney@3"}, options))
                                        .rows;
@@ -429,8 +329,7 @@ TEST(Optimality, FindsTheStraightLaneOptimal) {
     EXPECT_EQ(row["optimum"]["iou"], 1.0);
     EXPECT_EQ(row["candidate"]["category"], "ground_truth");
     EXPECT_GE(row["candidates"], row["feasible_candidates"]);
-    // Equal and gaps; then the scenes, and usable, success and overlap of optimum, beam, candidate and
-    // answers.
+    // Equal and gaps; then the scenes, and usable, success and overlap of the four kinds of answers.
     EXPECT_THAT(result.table, testing::ContainsRegex("\ndefault +- +- +1 +100.0 .* 1 +100.0 +0.000 +0.000 "
                                                      "+100.0 / 100.0 +100.0 / 100.0\n"));
     EXPECT_THAT(result.table, testing::ContainsRegex("\ndefault +- +- +1 +- / 100.0 / 100.0 +- / 100.0 "));

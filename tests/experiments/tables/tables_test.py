@@ -1,6 +1,5 @@
 """tables_test.py ROOT: how the figures of runs become tables, on figures made by hand, and that a page which says something else is found."""
 
-import importlib.util
 import json
 import os
 import re
@@ -14,7 +13,7 @@ ROOT = sys.argv.pop(1)
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(ROOT, "experiments", "tables"))
 
-import beam_picture  # noqa: E402
+import engines  # noqa: E402
 import held_out  # noqa: E402
 import races  # noqa: E402
 import reproduce  # noqa: E402
@@ -51,9 +50,9 @@ class HeldOut(unittest.TestCase):
         rows = [row("front", "front", 0.9), row("front_colors", "front", 0.95), row("others_colors", "rld-shape", 0.6)]
         lines = held_out.colour_table(held_out.Figures({"rows": rows})).splitlines()[2:]
         dashes = " – |" * 7
-        self.assertEqual(lines[:2], [f"| `front` | 90.0 / 50 |{dashes}", f"| `front`, with colours | 95.0 / 50 |{dashes}"])
+        self.assertEqual(lines[:2], [f"| `front` | 90.0/50 |{dashes}", f"| `front`, with colours | 95.0/50 |{dashes}"])
         self.assertIn(f"| `rld-shape` | – |{dashes}", lines)
-        self.assertIn(f"| `rld-shape`, with colours | 60.0 / 50 |{dashes}", lines)
+        self.assertIn(f"| `rld-shape`, with colours | 60.0/50 |{dashes}", lines)
         self.assertEqual(lines[-1], f"| ft-fsd-path-planning, with colours | – |{dashes}")
         self.assertEqual(len(lines), 2 * len(held_out.COLOURED))
 
@@ -61,7 +60,7 @@ class HeldOut(unittest.TestCase):
         part = {"part": "ordinary", "run": "front_colors", "method": "front", "condition": "car", "rate": 0.0, "scenes": 1, "measured": 1, "iou": 1.0}
         parts = [part | {"range": 30.0, "usable": 1.0, "judged": 3}, part | {"range": 50.0, "usable": 0.0, "judged": 1}]
         text = held_out.ordinary_table(held_out.Figures({"parts": parts}))
-        self.assertIn("| `car`, with colours | 75.0 / 100 | – | – | – |", text)
+        self.assertIn("| `car`, with colours | 75.0/100 | – | – | – |", text)
         self.assertIn("| `car` | – | – | – | – |", text)
 
     def test_the_script_makes_each_run_and_no_figure_with_colours_stands_for_one_without(self):
@@ -112,7 +111,7 @@ class Shipped(unittest.TestCase):
         rows = [self.row(f"colours_{name}", drawn, rate, 10, 0.9) for name in shipped.COLOURS for drawn in shipped.SETS for rate in shipped.RATES]
         rows += [self.row(f"{known}_{noise}", drawn, 0.0, 10 + drawn, 0.7) for known in ("known", "unknown") for noise in shipped.NOISES for drawn in shipped.SETS]
         colours = shipped.colour_table({"rows": rows}).splitlines()
-        self.assertEqual(colours[2], "| none | 90.0 / 50.0 | 90.0 / 50.0 | 90.0 / 50.0 | 90.0 / 50.0 | 100.0, 80 |")
+        self.assertEqual(colours[2], "| none | 90.0/50.0 | 90.0/50.0 | 90.0/50.0 | 90.0/50.0 | 100.0, 80 |")
         self.assertEqual(len(colours), 2 + len(shipped.COLOURS))
         uncertain = shipped.uncertainty_table({"rows": rows}).splitlines()
         self.assertEqual(uncertain[4], "| @41, @42, 51 | 0.01 | unknown | 70.0 | 50.0 | 100.0 | 80 |")
@@ -131,10 +130,11 @@ class Reproduce(unittest.TestCase):
 
     def test_a_part_that_was_killed_counts_from_its_last_begin(self):
         events = self.events(("held_out", "begin", 0), ("held_out", "begin", 5), ("held_out", "end", 15), ("shipped", "begin", 15), ("shipped", "end", 16),
-                             ("solvers", "begin", 16), ("solvers", "end", 18), ("pictures", "begin", 18), ("pictures", "end", 18))
+                             ("solvers", "begin", 16), ("solvers", "end", 18), ("engines", "begin", 18), ("engines", "end", 18), ("pictures", "begin", 18),
+                             ("pictures", "end", 18))
         rows = reproduce.part_rows(events)
         self.assertEqual([(row["part"], row["minutes"], row["calls"]) for row in rows],
-                         [("held_out", 10.0, 2), ("shipped", 1.0, 1), ("solvers", 2.0, 1), ("pictures", 0.0, 1)])
+                         [("held_out", 10.0, 2), ("shipped", 1.0, 1), ("solvers", 2.0, 1), ("engines", 0.0, 1), ("pictures", 0.0, 1)])
         with self.assertRaises(SystemExit):
             reproduce.part_rows(events[:-1])
 
@@ -146,11 +146,11 @@ class Reproduce(unittest.TestCase):
                 for event in self.events(*((part, event, minute) for minute, part in enumerate(reproduce.WHAT) for event in ("begin", "end"))):
                     stream.write(json.dumps(event) + "\n")
             stored = reproduce.collect(folder)
-        self.assertEqual((stored["commit"], stored["begun"], stored["ended"]), ("c", "2026-01-01 00:00", "2026-01-01 00:03"))
+        self.assertEqual((stored["commit"], stored["begun"], stored["ended"]), ("c", "2026-01-01 00:00", "2026-01-01 00:04"))
         self.assertIn("| commit | c |", reproduce.run_table(stored))
 
     def test_a_run_of_another_commit_is_found(self):
-        stored = {kind: {} for kind in tables.KINDS} | {"solvers": {"runs": {"a": {"commit": "c"}, "b": {"commit": "d"}}}}
+        stored = {kind: {} for kind in tables.KINDS} | {"engines": {"runs": {"e": {"commit": "f"}}}} | {"solvers": {"runs": {"a": {"commit": "c"}, "b": {"commit": "d"}}}}
         self.assertEqual(tables.strangers(stored), [])
         found = tables.strangers(stored | {"reproduce": {"commit": "c"}})
         self.assertEqual(len(found), 1)
@@ -171,17 +171,6 @@ class Solvers(unittest.TestCase):
                  {"scene": "s", "backend": "b", "nearest": 12, "status": "optimal", "latency_ms": 9.0, "permutation": 1},
                  {"row": "gap", "backend": "b", "nearest": 12}]
         self.assertEqual([(row["scenes"], row["proven"], row["max_ms"]) for row in solvers.backend_rows(lines)], [(1, 1, 2.0)])
-
-    def test_all_visible_cones_are_the_last_size(self):
-        def summary(nearest):
-            return {"row": "summary", "backend": "b", "nearest": nearest, "scenes": 2, "runs": 4, "solved": 3, "errors": 0, "geometric_ms": 2.0,
-                    "par10_ms": 30.0}
-        rows = solvers.size_rows([{"row": "block", "backend": "b", "version": "b 1"}, summary(0), summary(12), summary(60),
-                                  summary(12) | {"condition": "car"}])
-        self.assertEqual(len(rows), 3)
-        head, _, line = solvers.size_table(rows).splitlines()
-        self.assertEqual([cell.strip() for cell in head.split("|")[2:-1]], ["version", "n = 12", "n = 60", "all visible"])
-        self.assertEqual(line.count("2.0 / 30 (75.0 %)"), 3)
 
     def test_a_lane_that_is_missing_is_not_usable(self):
         optimum = {"usable": True, "iou": 1.0, "category": "ground_truth"}
@@ -208,11 +197,13 @@ class Solvers(unittest.TestCase):
         self.assertIn("| 1000 and more | 1 | 5000 |  |  | 1.00 | 0.0 |", solvers.class_table([row for row in rows if row["table"] == "growth by edges"], "edges"))
 
     def test_what_is_known_when_a_limit_ends_the_search(self):
-        def line(proven, objective=None, gap=None):
-            values = {"limit_ms": 5.0, "proven": proven, "objective": objective, "best_known": -10.0, "gap": gap}
-            return {key: value for key, value in values.items() if value is not None}
-        rows = solvers.anytime_rows([line(True, -10.0), line(True), line(False, -9.95, 0.4), line(False, -8.0, 0.2), line(False)])
+        def line(status, latency_ms, objective=None, *steps):
+            return {"scene": "a", "status": status, "latency_ms": latency_ms, "steps": [
+                {"time_ms": time, "objective": of, "bound": bound} for time, of, bound in steps]} | ({} if objective is None else {"objective": objective})
+        rows = solvers.anytime_rows([line("optimal", 4.0, -10.0), line("infeasible", 1.0), line("optimal", 30.0, -10.0, (5.1, -9.95, -14.0), (30.0, -10.0, -10.0)),
+                                     line("feasible", 2000.0, -10.0, (5.2, -8.0, -12.0), (2000.0, -10.0, -11.0)), line("stopped", 2000.0)])
         self.assertEqual((rows[0]["scenes"], rows[0]["open"], rows[0]["open_close"], rows[0]["gap"]), (5, 3, 1, 0.3))
+        self.assertEqual((rows[-1]["open"], rows[-1]["open_close"], rows[-1]["gap"]), (2, 1, 0.1))
         self.assertIn("| 5 ms | 2 of 5 | 60.0 | 1 of 3 | 30 % |", solvers.anytime_table(rows))
 
     def test_certificates_are_read_off_the_last_line(self):
@@ -227,18 +218,35 @@ class Solvers(unittest.TestCase):
                          ["| **15, 4** | 90.0 | 80.0 | 80.0 | 95.0 | 85.0 | 1.0 / 2.0 / 30 |", "| 30, 4 | 90.0 | 80.0 | 80.0 | 95.0 | 85.0 | 1.0 / 2.0 / 30 |"])
 
 
-class BeamPicture(unittest.TestCase):
-    def test_a_picture_holds_its_figures(self):
-        self.assertEqual(beam_picture.points({"rows": []}), {})
-        row = {"table": "beam", "beam": 5, "best_score": 0.8, "first_usable": 0.9, "iou": 1.0}
-        stored = {"rows": [row, row | {"beam": 10, "iou": 0.5}]}
-        self.assertEqual(beam_picture.points(stored)["iou"], [[5, 100.0], [10, 50.0]])
-        shown = tables.read(tables.BEAM_PICTURE)
-        self.assertNotEqual(beam_picture.points_in(shown), beam_picture.points(stored))
-        if importlib.util.find_spec("matplotlib"):
-            text = beam_picture.picture(stored)
-            self.assertEqual(beam_picture.points_in(text), beam_picture.points(stored))
-            self.assertEqual(len(re.findall(">(?:5|10)</text>", text)), 2)  # the marks of the axis
+class Engines(unittest.TestCase):
+    def lines(self):
+        def solve(nearest, status, time_ms, **more):
+            return {"scene": "s", "track": "x", "backend": "b", "nearest": nearest, "status": status, "latency_ms": time_ms} | more
+        summary = {"row": "summary", "backend": "b", "nearest": 0, "geometric_ms": 2.0, "geometric_ms_interval": [1.0, 3.0], "par10_ms": 30.0,
+                   "contribution_ms": 5.0}
+        return [solve(0, "optimal", 2.0), solve(0, "infeasible", 4.0), solve(0, "feasible", 10.0), solve(12, "optimal", 1.0),
+                solve(12, "error", 9.0, permutation=1), {"row": "block", "backend": "b", "nearest": 0, "version": "b 1"}, summary,
+                summary | {"condition": "car", "par10_ms": 99.0},
+                {"row": "pair", "first": "b", "second": "a", "nearest": 0, "ratio": 2.0, "ratio_interval": [1.5, 2.5], "corrected_p_value": 0.03}]
+
+    def test_what_is_not_proven_is_above_all_times(self):
+        rows = engines.size_rows(self.lines())
+        self.assertEqual([(row["nearest"], row["scenes"], row["solved"], row["median_ms"], row["p95_ms"]) for row in rows],
+                         [(0, 3, 2, 4.0, None), (12, 1, 1, 1.0, 1.0)])
+
+    def test_all_visible_cones_are_the_last_size(self):
+        head, _, line = engines.size_table(engines.size_rows(self.lines())).splitlines()
+        self.assertEqual([cell.strip() for cell in head.split("|")[2:-1]], ["n = 12", "all visible"])
+        self.assertEqual(line, "| `b`, b 1 | 1.0/1.0/100.0 | 4.0/–/66.7 |")
+
+    def test_figures_are_shown_with_their_intervals(self):
+        text = engines.compared_table(engines.size_rows(self.lines())).splitlines()[2]
+        self.assertEqual(text, "| `b` | 2.0 (1.0 to 3.0) | 30 | – | 2.0 (1.5 to 2.5) | 0.03 | 5.0 |")
+
+    def test_methods_among_the_same_cones_have_a_row_each(self):
+        text = engines.tables({"rows": [{"table": "cone sets", "method": "clc", "nearest": nearest, "usable": 0.5} for nearest in (6, 12, 0)]})["usable by cone set"]
+        self.assertEqual(text.splitlines()[0], "| usable, % | n = 12 | all visible |")
+        self.assertIn("| `clc` | 50.0 | 50.0 |", text)
 
 
 @unittest.skipUnless(shutil.which("git"), "there is no git")

@@ -1,6 +1,5 @@
 #include "conelane/invalid_input.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
-#include "graph_search/baselines/astar_lane/near_cones.hpp"
 #include "graph_search/baselines/astar_lane/path_boundaries.hpp"
 #include "graph_search/shared/search_graph.hpp"
 #include "tests/support/no_time_limit.hpp"
@@ -41,8 +40,7 @@ TEST(AstarLane, FollowsABend) {
 }
 
 TEST(AstarLane, DoesNotTurnTighterThanTheCarCan) {
-    AstarLaneParameters parameters;
-    parameters.least_radius_m = 8.0;
+    AstarLaneParameters parameters{.least_radius_m = 8.0};
     EXPECT_NE(detect(bend(5.0, 6), parameters).lane, kSixGates);
     parameters.least_radius_m = 4.0;
     EXPECT_EQ(detect(bend(5.0, 6), parameters).lane, kSixGates);
@@ -64,8 +62,7 @@ TEST(AstarLane, DrivesRoundAConeInItsWay) {
 }
 
 TEST(AstarLane, EndsWhereTheConesEnd) {
-    AstarLaneParameters parameters;
-    parameters.horizon_m = 60.0;
+    AstarLaneParameters parameters{.horizon_m = 60.0};
     Scene scene = bend(1000.0, 4);
     // Two more on the left, far behind the last of the right.
     scene.cones.push_back({30, {30.0, 1.8}});
@@ -75,8 +72,7 @@ TEST(AstarLane, EndsWhereTheConesEnd) {
 }
 
 TEST(AstarLane, SaysThatItsLimitEndedTheSearch) {
-    AstarLaneParameters parameters;
-    parameters.max_steps = 3;
+    AstarLaneParameters parameters{.max_steps = 3};
     Scene scene = bend(15.0, 6);
     const LaneAnswer answer = detect(scene, parameters);
     EXPECT_EQ(answer.status, LaneStatus::stopped);
@@ -93,8 +89,7 @@ TEST(AstarLane, KeepsNothingOfTheSceneBefore) {
 }
 
 TEST(AstarLane, RefusesParametersOutOfTheirRange) {
-    AstarLaneParameters parameters;
-    parameters.least_radius_m = 0.0;
+    AstarLaneParameters parameters{.least_radius_m = 0.0};
     EXPECT_EQ(refused_key([&] { (void)make_astar_lane_detector(parameters); }), "least_radius_m");
     parameters = {};
     parameters.max_steps = 0;

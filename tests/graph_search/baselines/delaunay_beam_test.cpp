@@ -63,15 +63,13 @@ TEST(DelaunayBeam, ColorsTellSidesApart) {
     EXPECT_EQ(detect(scene).lane.left.front(), 0);
     paint(ConeColor::blue, ConeColor::yellow, ConeColor::yellow);
     EXPECT_EQ(detect(scene).lane.left.front(), 0);
-    DelaunayBeamParameters parameters;
-    parameters.w_color = 100.0;
+    DelaunayBeamParameters parameters{.w_color = 100.0};
     paint(ConeColor::yellow, ConeColor::blue, ConeColor::yellow);
     EXPECT_EQ(detect(scene, parameters).lane.left.front(), 10) << "the right lane, against the car's place";
 }
 
 TEST(DelaunayBeam, GrowsNoFartherThanTheLengthExpected) {
-    DelaunayBeamParameters parameters;
-    parameters.expected_length_m = 10.0;
+    DelaunayBeamParameters parameters{.expected_length_m = 10.0};
     const Lane lane = detect(five_gates(), parameters).lane;
     EXPECT_GE(lane.left.size(), 3u);
     EXPECT_LT(lane.left.size() + lane.right.size(), 10u);
@@ -79,8 +77,7 @@ TEST(DelaunayBeam, GrowsNoFartherThanTheLengthExpected) {
 
 // A narrow beam may miss a lane, and reports that it left paths out; the whole tree contains one.
 TEST(DelaunayBeam, FindsNothingButKnowsThatTheBeamWasTooNarrow) {
-    DelaunayBeamParameters narrow;
-    narrow.beam_width = 1;
+    DelaunayBeamParameters narrow{.beam_width = 1};
     int missed = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(seed);
@@ -96,8 +93,7 @@ TEST(DelaunayBeam, FindsNothingButKnowsThatTheBeamWasTooNarrow) {
 }
 
 TEST(DelaunayBeam, RefusesParametersOutOfTheirRange) {
-    DelaunayBeamParameters parameters;
-    parameters.w_turn = -1.0;
+    DelaunayBeamParameters parameters{.w_turn = -1.0};
     EXPECT_EQ(refused_key([&] { (void)make_delaunay_beam_detector(parameters); }), "w_turn");
     parameters = {};
     parameters.beam_width = 0;

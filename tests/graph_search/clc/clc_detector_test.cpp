@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "graph_search/clc/lane_features.hpp"
 #include "graph_search/clc/start_vertices.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/no_time_limit.hpp"
@@ -18,8 +19,6 @@
 
 namespace conelane {
 namespace {
-
-using ::testing::ElementsAre;
 
 LaneAnswer detect(const Scene& scene, const ClcOptions& options = {},
                   const DetectionLimits& limits = tests::kNoTimeLimit) {
@@ -63,9 +62,8 @@ using Lanes = std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>>;
 /// The candidates of an answer, each of which it has once.
 Lanes lanes_of(const LaneAnswer& answer) {
     Lanes lanes;
-    for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+    for (const LaneCandidate& candidate : answer.enumeration->candidates)
         EXPECT_TRUE(lanes.insert({candidate.lane.left, candidate.lane.right}).second) << "met twice";
-    }
     return lanes;
 }
 
@@ -82,9 +80,8 @@ std::vector<std::pair<std::string, ClcOptions>> variants() {
 Scene heap(std::size_t cones, double spread_m) {
     Scene scene = tests::straight_lane(6);
     const Scene heaped = tests::strewn_scene(cones, 1.0, 1.0);
-    for (const Cone& cone : heaped.cones) {
+    for (const Cone& cone : heaped.cones)
         scene.cones.push_back({1000 + cone.id, spread_m * cone.position + Point(9.0, 2.0)});
-    }
     return scene;
 }
 
@@ -107,9 +104,7 @@ TEST(ClcDetector, CandidatesAreFeasibleDistinctAndHoldTheAnswerAsTheLongest) {
         std::unordered_map<ConeId, Point> position_of;
         for (const Cone& cone : scene.cones) position_of[cone.id] = cone.position;
         const auto points = [&](const std::vector<ConeId>& ids) {
-            std::vector<Point> boundary;
-            for (const ConeId id : ids) boundary.push_back(position_of.at(id));
-            return boundary;
+            return mapped(ids, [&](const ConeId id) { return position_of.at(id); });
         };
         const auto length_m = [&](const Lane& lane) {
             return (polyline_length_m(points(lane.left), lane.closed) +
@@ -190,9 +185,8 @@ Lanes candidates(const Scene& scene, const ClcOptions& options) {
     const LaneAnswer answer = detect(scene, options, limits);
     EXPECT_LE(answer.enumeration->iterations, options.iteration_limit);
     Lanes lanes;
-    for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+    for (const LaneCandidate& candidate : answer.enumeration->candidates)
         lanes.emplace(candidate.lane.left, candidate.lane.right);
-    }
     return lanes;
 }
 
@@ -270,15 +264,7 @@ TEST(CandidateSearch, EveryCandidateHasTheFeaturesOfItsOwnStart) {
 }
 
 TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
-    Scene scene;
-    for (int i = 0; i < 12; ++i) {
-        const double angle = 2.0 * 3.14159265358979 * (i + 0.3) / 12.0;
-        for (const double radius_m : {6.0, 9.5}) {
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()),
-                                   {radius_m * std::sin(angle), 7.75 - radius_m * std::cos(angle)}});
-        }
-    }
-    const LaneAnswer answer = detect(scene);
+    const LaneAnswer answer = detect(tests::circuit_seen_whole());
     EXPECT_TRUE(answer.lane.closed);
     EXPECT_EQ(answer.lane.left.size(), 12u);
     EXPECT_EQ(answer.lane.right.size(), 12u);

@@ -11,7 +11,6 @@
 namespace conelane {
 namespace {
 
-using ::testing::ElementsAre;
 using tests::cones_at;
 
 StepScores zero_scores() {
@@ -27,9 +26,8 @@ StepScores sensible_scores() {
     StepScores scores = zero_scores();
     score_at(scores, kStepsMeasure, 0) = 3.0;
     const auto fall = [&](std::size_t measure, double by) {
-        for (std::size_t i = 0; i < step_measures()[measure].scores; ++i) {
+        for (std::size_t i = 0; i < step_measures()[measure].scores; ++i)
             score_at(scores, measure, i) = -by * static_cast<double>(i);
-        }
     };
     fall(kStartDistanceMeasure, 0.5);
     fall(kStartAsymmetryMeasure, 0.3);
@@ -72,9 +70,7 @@ struct Search {
     SearchBudget budget;  ///< without a time limit
 
     Search(Scene of, StepScores by) : scene(std::move(of)), scores(std::move(by)) {
-        std::vector<Point> points;
-        for (const Cone& cone : scene.cones) points.push_back(cone.position);
-        graph.build(points, 5.5);
+        graph.build(mapped(scene.cones, &Cone::position), 5.5);
     }
     void start(std::size_t width) { beam.start(graph, scene, all_pairs(scene), scores, {}, width); }
     std::optional<std::size_t> best(std::size_t width) {
@@ -349,9 +345,8 @@ TEST(LaneBeam, AWideBeamFindsTheBestOfAllLanes) {
         Search all(random_scene(seed, 3), sensible_scores());
         all.start(1);
         double highest = -std::numeric_limits<double>::infinity();
-        for (const StartPair& pair : all_pairs(all.scene)) {
+        for (const StartPair& pair : all_pairs(all.scene))
             highest = std::max(highest, best_below(all.beam, all.graph, all.beam.add_start(pair)));
-        }
         ASSERT_TRUE(best);
         EXPECT_NEAR(wide.beam.state(*best).score, highest, 1e-9);
     }
@@ -365,9 +360,7 @@ TEST(LaneBeam, AMirroredSceneHasTheMirroredLaneInAnyOrderOfTheCones) {
             Search from(of, sensible_scores());
             PathPairVertices vertices = from.beam.vertices(*from.best(8));
             for (std::vector<Vertex>& side : vertices) {
-                for (Vertex& vertex : side) {
-                    vertex = static_cast<Vertex>(from.scene.cones[vertex].id);
-                }
+                for (Vertex& vertex : side) vertex = static_cast<Vertex>(from.scene.cones[vertex].id);
             }
             return vertices;
         };

@@ -1,6 +1,7 @@
 #include "graph_search/clc/lane_constraints.hpp"
 
 #include "graph_search/clc/deciders.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
 #include "tests/support/testing.hpp"
 
@@ -164,31 +165,22 @@ TEST(LaneConstraints, ArePutBackByPop) {
     }
 }
 
-std::vector<Point> ring(double radius_m, std::size_t count, double sector_rad = 2 * std::numbers::pi) {
-    std::vector<Point> points;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double angle = sector_rad * static_cast<double>(i) / static_cast<double>(count);
-        points.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle));
-    }
-    return points;
-}
-
 TEST(Closing, ARingCanBeClosedAndAnArcCannot) {
     const LaneBounds bounds;
-    EXPECT_TRUE(can_be_closed(ring(8, 14), ring(12, 18), 5.5, bounds));
-    EXPECT_TRUE(can_be_closed(ring(12, 18), ring(8, 14), 5.5, bounds));
-    EXPECT_FALSE(can_be_closed(ring(8, 14, 4.0), ring(12, 18, 4.0), 5.5, bounds));
-    EXPECT_FALSE(can_be_closed(ring(8, 14), ring(15, 20), 5.5, bounds)) << "too wide";
-    EXPECT_FALSE(can_be_closed(ring(8, 14), ring(10, 18), 5.5, bounds)) << "too narrow";
-    EXPECT_FALSE(can_be_closed(ring(1, 2), ring(4, 8), 5.5, bounds)) << "two points are no ring";
+    EXPECT_TRUE(can_be_closed(tests::ring(8, 14), tests::ring(12, 18), 5.5, bounds));
+    EXPECT_TRUE(can_be_closed(tests::ring(12, 18), tests::ring(8, 14), 5.5, bounds));
+    EXPECT_FALSE(can_be_closed(tests::ring(8, 14, 0.0, 4.0), tests::ring(12, 18, 0.0, 4.0), 5.5, bounds));
+    EXPECT_FALSE(can_be_closed(tests::ring(8, 14), tests::ring(15, 20), 5.5, bounds)) << "too wide";
+    EXPECT_FALSE(can_be_closed(tests::ring(8, 14), tests::ring(10, 18), 5.5, bounds)) << "too narrow";
+    EXPECT_FALSE(can_be_closed(tests::ring(1, 2), tests::ring(4, 8), 5.5, bounds))
+        << "two points are no ring";
 }
 
 TEST(Closing, OfBoundariesSideBySideIsNoLane) {
-    std::vector<Point> left = ring(1.5, 8);
-    std::vector<Point> right = ring(1.5, 8);
+    std::vector<Point> left = tests::ring(1.5, 8);
+    std::vector<Point> right = tests::ring(1.5, 8);
     for (Point& point : right) point += Point(6.0, 0.0);
-    LaneBounds wide;
-    wide.w_max_m = 20.0;
+    LaneBounds wide{.w_max_m = 20.0};
     EXPECT_FALSE(can_be_closed(left, right, 5.5, wide));
 }
 

@@ -7,8 +7,6 @@
 namespace conelane {
 namespace {
 
-using ::testing::ElementsAre;
-
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 const Point kHeading(1.0, 0.0);
 
@@ -105,8 +103,7 @@ TEST(PathPairEnumeration, AddsWhatIsNotThereYet) {
     PathPairs pairs;
     PathPairEnumeration enumeration;
     const auto run = [&](StartPair start, std::uint32_t max_discrepancies) {
-        EnumerationRules rules;
-        rules.max_discrepancies = max_discrepancies;
+        EnumerationRules rules{.max_discrepancies = max_discrepancies};
         SearchBudget budget;
         budget.iteration_limit = kNoLimit;
         EXPECT_TRUE(enumeration.run(graph, start, kHeading, rules, budget, pairs));
@@ -153,8 +150,7 @@ void add_paths(const std::vector<Point>& points, const EnumerationRules& rules, 
         if (std::ranges::count(path, next) > 0) continue;
         const Point segment = points[next] - points[path.back()];
         if (segment.norm() > rules.d_max_m) continue;
-        // C_seg is applied here, because no extension can repair it: otherwise there are too many paths to
-        // pair.
+        // C_seg is applied here, because no extension can repair it: else there are too many paths to pair.
         if (size > 1 && std::abs(turning_angle(points[path.back()] - points[path[size - 2]], segment)) >=
                             rules.bounds.phi_max_rad) {
             continue;
@@ -174,9 +170,7 @@ std::multiset<PathPairVertices> feasible_by_definition(const std::vector<Point>&
         add_paths(points, rules, start, paths[side]);
     }
     const auto positions = [&](const std::vector<Vertex>& path) {
-        std::vector<Point> boundary;
-        for (const Vertex vertex : path) boundary.push_back(points[vertex]);
-        return boundary;
+        return mapped(path, [&](const Vertex vertex) { return points[vertex]; });
     };
     std::multiset<PathPairVertices> feasible;
     for (const std::vector<Vertex>& left : paths[kLeft]) {
@@ -193,8 +187,7 @@ std::multiset<PathPairVertices> feasible_by_definition(const std::vector<Point>&
 
 /// The number of feasible pairs of random maps, and of those that the search misses.
 std::pair<std::size_t, std::size_t> feasible_and_missed(WidthBacktracking rule) {
-    EnumerationRules rules;
-    rules.width_backtracking = rule;
+    EnumerationRules rules{.width_backtracking = rule};
     std::size_t feasible = 0;
     std::size_t missed = 0;
     for (unsigned seed = 0; seed < 150; ++seed) {
@@ -248,8 +241,7 @@ std::size_t discrepancies(const std::vector<Point>& points, double d_max_m, cons
 void expect_only(
     const std::function<std::multiset<PathPairVertices>(const std::vector<Point>&, unsigned)>& found,
     const std::function<bool(const std::vector<Point>&, unsigned, const PathPairVertices&)>& keeps) {
-    EnumerationRules all;
-    all.width_backtracking = WidthBacktracking::proven;
+    EnumerationRules all{.width_backtracking = WidthBacktracking::proven};
     std::size_t kept = 0;
     std::size_t left_out = 0;
     for (unsigned seed = 0; seed < 100; ++seed) {
@@ -266,8 +258,7 @@ void expect_only(
 }
 
 TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
-    EnumerationRules few;
-    few.width_backtracking = WidthBacktracking::proven;
+    EnumerationRules few{.width_backtracking = WidthBacktracking::proven};
     expect_only(
         [&](const std::vector<Point>& points, unsigned seed) {
             few.max_discrepancies = seed % 4;
@@ -296,8 +287,7 @@ bool steps_are_near(const std::vector<Point>& points, double d_max_m, const Path
 }
 
 TEST(PathPairEnumeration, LeavesOutStepsBeyondTheReach) {
-    EnumerationRules rules;
-    rules.width_backtracking = WidthBacktracking::proven;
+    EnumerationRules rules{.width_backtracking = WidthBacktracking::proven};
     const auto nearest = [](unsigned seed) { return std::size_t{1} + seed % 3; };
     expect_only([&](const std::vector<Point>& points,
                     unsigned seed) { return open_pairs(enumerate(points, rules, kNoLimit, nearest(seed))); },
@@ -311,8 +301,7 @@ TEST(PathPairEnumeration, MayShareTheNextVerticesOfEarlierRuns) {
     for (unsigned seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
         const std::vector<Point> points = random_map(seed, 11);
-        EnumerationRules rules;
-        rules.next_vertex_distance_weight = 1.45;
+        EnumerationRules rules{.next_vertex_distance_weight = 1.45};
         SearchGraph graph;
         graph.build(points, rules.d_max_m);
         NextVertexDecider shared;
@@ -347,8 +336,7 @@ TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {
     const std::vector<Point> points{{0.5, 1.9},    {0.3, -1.8},   {4.11, 3.9},   {7.02, 2.64},
                                     {2.76, -3.25}, {6.63, -2.21}, {10.58, 0.18}, {9.72, 2.98}};
     const PathPairVertices lane{{{0, 2, 3}, {1, 4, 5, 6, 7}}};
-    EnumerationRules rules;
-    rules.width_backtracking = WidthBacktracking::proven;
+    EnumerationRules rules{.width_backtracking = WidthBacktracking::proven};
     EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 1u);
     rules.width_backtracking = WidthBacktracking::left_behind;
     EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 0u);

@@ -75,8 +75,7 @@ TEST(PaperFeatures, OfTheEnumerationEqualTheirDefinition) {
         }
         SearchGraph graph;
         graph.build(points, 5.5);
-        EnumerationRules rules;
-        rules.with_features = true;
+        EnumerationRules rules{.with_features = true};
         SearchBudget budget;
         PathPairs pairs;
         PathPairEnumeration enumeration;
@@ -90,9 +89,8 @@ TEST(PaperFeatures, OfTheEnumerationEqualTheirDefinition) {
             }
             const PaperFeatures expected =
                 paper_features(boundaries[kLeft], boundaries[kRight], pairs.found()[i].closed);
-            for (std::size_t k = 0; k < expected.size(); ++k) {
+            for (std::size_t k = 0; k < expected.size(); ++k)
                 ASSERT_NEAR(pairs.features()[i][k], expected[k], 1e-9) << "feature " << k + 1;
-            }
             ++compared;
         }
     }

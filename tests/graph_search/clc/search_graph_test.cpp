@@ -12,8 +12,6 @@
 namespace conelane {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 using tests::cones_at;
 
 std::vector<Vertex> vertices_of(const NextVertexDecider& decider, NextVertexDecider::Range range) {
@@ -127,22 +125,6 @@ TEST(LeftRightDecider, AdvancesTheBoundaryThatIsBehind) {
     const BoundaryTip right_level{{4, -2}, {4, 0}, {8, -2}};
     EXPECT_EQ(left_right_decision({left, right_level}, kLeft), kLeft);
     EXPECT_EQ(left_right_decision({left, right_level}, kRight), kRight);
-}
-
-TEST(SearchGraph, WithARuleJoinsThePairsOfTheRuleThatAreNear) {
-    const std::vector<Point> points{{0, 0}, {4, 0}, {8, 0}, {4, 3}};
-    const EdgeRule rule = [](std::span<const Point> all) {
-        EXPECT_EQ(all.size(), 4u);
-        return std::vector<std::pair<Vertex, Vertex>>{{1, 0}, {0, 2}, {1, 3}, {3, 1}};
-    };
-    SearchGraph graph;
-    graph.build(points, 5.5, rule);
-    EXPECT_THAT(graph.neighbours(0), ElementsAre(1));
-    EXPECT_THAT(graph.neighbours(1), ElementsAre(0, 3));
-    EXPECT_THAT(graph.neighbours(2), IsEmpty()) << "0 is 8 m off";
-    EXPECT_THAT(graph.neighbours(3), ElementsAre(1));
-    graph.build(points, 5.5);
-    EXPECT_THAT(graph.neighbours(2), ElementsAre(1, 3));
 }
 
 TEST(StepReach, EndsAtTheLastOfTheNearestNeighbours) {
@@ -270,8 +252,7 @@ TEST(StartPairs, LeavesOutPairsThatNoLaneCanStartWith) {
 
 TEST(StartPairs, KeepToTheWidthsOfTheLanesBounds) {
     const Scene narrow = cones_at({{1, 1.2}, {1, -1.2}});
-    LaneBounds bounds;
-    bounds.w_min_m = 2.0;
+    LaneBounds bounds{.w_min_m = 2.0};
     EXPECT_THAT(start_pairs(narrow, 3, {}, bounds), ElementsAre(StartPair{0, 1}));
     bounds.w_max_m = 2.4;
     EXPECT_THAT(start_pairs(narrow, 3, {}, bounds), IsEmpty());

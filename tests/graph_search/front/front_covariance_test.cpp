@@ -1,8 +1,7 @@
-// What `front` makes of covariances of positions: nothing where they are 0, wider rules and shorter trust
-// elsewhere.
+// What `front` makes of covariances: nothing where they are 0, wider rules and shorter trust elsewhere.
 
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_moves.hpp"
+#include "graph_search/front/front_state.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"

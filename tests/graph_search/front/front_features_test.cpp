@@ -1,10 +1,9 @@
-// The inputs of the networks of `front` for a lane that grows, computed by hand; scores depend only on these
-// inputs.
+// The inputs of the networks of `front` for a lane that grows, by hand; scores depend only on these inputs.
 
 #include "graph_search/front/front_features.hpp"
 
 #include "graph_search/front/front_cost.hpp"
-#include "graph_search/front/front_judge_features.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/testing.hpp"
 
@@ -18,8 +17,7 @@ class Growth {
   public:
     /// `colors`: of the first cones; the others' are unknown.
     explicit Growth(const std::vector<Point>& cones, const std::vector<ConeColor>& colors = {}) {
-        for (const Point& cone : cones)
-            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), cone});
+        scene = tests::cones_at(cones);
         for (std::size_t i = 0; i < colors.size(); ++i) scene.cones[i].color = colors[i];
         map.build(scene);
         vertex_.resize(cones.size());

@@ -101,8 +101,7 @@ TEST(FrontJudge, SharesAreThoseOfTheLanesWithTheSameSegment) {
         const Judged judged(tests::random_scene(seed, 24), random_front_weights(seed));
         if (judged.contenders.empty()) continue;
         const std::vector<double> probability = softmax(judged.contenders);
-        std::vector<Segments> segments;
-        for (const Cones& lane : judged.lanes) segments.push_back(segments_of(lane));
+        const std::vector<Segments> segments = mapped(judged.lanes, segments_of);
         for (std::size_t i = 0; i < judged.lanes.size(); ++i) {
             double least = 1.0;
             for (const auto& segment : segments[i]) {
@@ -129,8 +128,7 @@ TEST(FrontJudge, AConeIsSeenWithThoseBeforeItAndWithTheBestLaneThatHasIt) {
         const Judged judged(tests::random_scene(seed, 24), random_front_weights(seed));
         if (judged.contenders.empty()) continue;
         const std::vector<double> probability = softmax(judged.contenders);
-        std::vector<Segments> segments;
-        for (const Cones& lane : judged.lanes) segments.push_back(segments_of(lane));
+        const std::vector<Segments> segments = mapped(judged.lanes, segments_of);
         for (std::size_t i = 0; i < judged.lanes.size(); ++i) {
             float least = 1.0F;
             for (const std::uint32_t place : judged.judge.path(i)) {

@@ -13,20 +13,16 @@
 namespace conelane {
 namespace {
 
-using testing::ElementsAre;
-using testing::UnorderedElementsAre;
 using tests::random_front_weights;
 using tests::straight_front_scene;
 using Cones = std::array<std::vector<Vertex>, 2>;
 
 /// All states are kept.
 FrontSearchOptions exhaustive() {
-    FrontSearchOptions options;
-    options.beam_width = std::numeric_limits<std::size_t>::max();
-    options.drop = std::numeric_limits<double>::infinity();
-    options.finished_drop = std::numeric_limits<double>::infinity();
-    options.merge = false;
-    return options;
+    return FrontSearchOptions{.beam_width = std::numeric_limits<std::size_t>::max(),
+                              .drop = std::numeric_limits<double>::infinity(),
+                              .finished_drop = std::numeric_limits<double>::infinity(),
+                              .merge = false};
 }
 
 /// A search of the scene, run to its end unless told otherwise.
@@ -268,10 +264,8 @@ class Front {
     /// Ids of the cones to which the left side may continue.
     std::vector<ConeId> list(const FrontRules& rules) {
         moves.list(map_, state, kLeft, rules);
-        std::vector<ConeId> ids;
-        for (const FrontMove& move : moves.extensions)
-            ids.push_back(scene_.cones[map_.scene_index(move.to)].id);
-        return ids;
+        return mapped(moves.extensions,
+                      [&](const FrontMove& move) { return scene_.cones[map_.scene_index(move.to)].id; });
     }
 
     FrontState state;
@@ -314,8 +308,7 @@ TEST(FrontMoves, ASideThatGoesOnAloneStaysNearTheOtherOne) {
 
 TEST(FrontMoves, OfTheShortSegmentsTheShortestAreListedAndTheRestIsMentioned) {
     Front front({{6.5, 2.2}, {6.0, 1.8}});
-    FrontRules rules;
-    rules.short_segments = 1;
+    FrontRules rules{.short_segments = 1};
     EXPECT_THAT(front.list(rules), ElementsAre(3));
     EXPECT_TRUE(front.moves.left_out);
     rules.short_segments = 2;
@@ -325,8 +318,7 @@ TEST(FrontMoves, OfTheShortSegmentsTheShortestAreListedAndTheRestIsMentioned) {
 
 TEST(FrontMoves, OfTheLongSegmentsTheStraightestAreListed) {
     Front front({{9.5, 4.0}, {10.0, 1.8}, {9.0, -0.2}});
-    FrontRules rules;
-    rules.long_segments = 1;
+    FrontRules rules{.long_segments = 1};
     EXPECT_THAT(front.list(rules), ElementsAre(3));
     rules.long_segments = 2;
     EXPECT_THAT(front.list(rules), ElementsAre(3, 4));
@@ -453,9 +445,8 @@ Scene hairpin(double radius_m) {
     const auto add = [&](ConeId id, double offset_m, double spacing_m) {
         // offset_m: of the boundary from the centre line, positive to the right
         const double r = radius_m + offset_m;
-        for (double back_m = spacing_m * std::floor(7.5 / spacing_m); back_m > 0.1; back_m -= spacing_m) {
+        for (double back_m = spacing_m * std::floor(7.5 / spacing_m); back_m > 0.1; back_m -= spacing_m)
             scene.cones.push_back({id++, {8.0 - back_m, -offset_m}});
-        }
         const int steps = std::max(2, static_cast<int>(r * std::numbers::pi / spacing_m));
         for (int i = 0; i <= steps; ++i) {
             const double angle_rad = std::numbers::pi * i / steps;

@@ -1,5 +1,4 @@
-// No lane graph passes a frontier that path-pair drops, and the search on the frontiers finds the best
-// one.
+// No lane graph passes a frontier that path-pair drops; the search on the frontiers finds the best one.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
@@ -36,9 +35,8 @@ struct Frontiers {
         residual.assign(graph, system.kinds[0].start, clock);
         decisions.reset(graph);
         boost::random::mt19937_64 random(seed);
-        for (int cone = 0; cone < graph.cone_count(); ++cone) {
+        for (int cone = 0; cone < graph.cone_count(); ++cone)
             multipliers.cone.push_back(boost::random::uniform_real_distribution<double>(0.0, 0.5)(random));
-        }
         leg_bound = relaxation.evaluate(residual, multipliers);
         edges.assign(graph, residual, clock);
         dominated.find(residual, relaxation, edges, true, clock);
@@ -80,9 +78,8 @@ struct Frontiers {
             }
             leg.push_back(a);
             if (!graph.near(residual.head[to_index(a)])) all.push_back(leg);
-            for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p) {
+            for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p)
                 extend(residual.out_arc[to_index(p)]);
-            }
             leg.pop_back();
         };
         for (int a = 0; a < residual.size(); ++a) {
@@ -153,8 +150,7 @@ TEST(PathPairArcGraph, EdgesOfAForbiddenTurnExcludeEachOther) {
     EXPECT_FALSE(s.graph.incompatible(s.graph.arc(0, 2) / 2, s.graph.arc(2, 4) / 2)) << "straight on";
 }
 
-/// 500 cones without an edge: if the time ends at any check, the last of which is among the far cones, there
-/// is no graph.
+/// 500 cones without an edge: if the time ends at any check, also among the far cones, there is no graph.
 TEST(PathPairArcGraph, AnInterruptedBuildGivesNoGraph) {
     Scene scene;
     for (int cone = 0; cone < 500; ++cone)
@@ -172,16 +168,10 @@ TEST(PathPairArcGraph, AnInterruptedBuildGivesNoGraph) {
     }
 }
 
-/// Three cones, around each of which a leg may turn at no cost: a round costs exactly 0, so it is not a cycle
-/// that gains.
+/// Three cones, around each of which a leg may turn at no cost: a round costs exactly 0, which is no gain.
 TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
-    Scene scene;
-    const double height = 1.6 * std::sqrt(3.0);
-    for (const Point& place : {Point(1.0, -1.6), Point(1.0, 1.6), Point(1.0 + height, 0.0)})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
-    RldParameters parameters;
-    parameters.t_crit = 1000.0;
-    parameters.w_t = 0.0;
+    const Scene scene = tests::cones_at({{1.0, -1.6}, {1.0, 1.6}, {1.0 + 1.6 * std::sqrt(3.0), 0.0}});
+    RldParameters parameters{.w_t = 0.0, .t_crit = 1000.0};
     const LaneGraphProblem problem = make_problem(scene, parameters);
     ArcGraph graph;
     SearchClock clock;
@@ -231,8 +221,7 @@ TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
                                    {0.0, -1.75},
                                    {3.2, -1.75},
                                    {6.0, -1.75}});
-    RldParameters parameters;
-    parameters.d_max = 16.0;
+    RldParameters parameters{.d_max = 16.0};
     Frontiers s(make_problem(scene, parameters), 1);
     s.relaxation.evaluate_backward(s.residual);
     SecondLegBound second(s.graph, s.clock);
@@ -267,9 +256,8 @@ TEST(PathPairDominatedEdges, LetEveryPairOfLegsPass) {
             for (const std::vector<int>& second : legs) {
                 if (!s.are_pair(first, second)) continue;
                 ++pairs;
-                for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+                for (std::size_t k = 0; k + 1 < first.size(); ++k)
                     ASSERT_TRUE(s.dominated.may_follow(0, first[k], first[k + 1]));
-                }
                 for (const int a : first) {
                     for (const int b : second) ASSERT_TRUE(s.dominated.may_pair(0, a, 0, b, false));
                 }

@@ -1,5 +1,4 @@
-// The parts of path-pair's search that need no scene: its clock, its queue of nodes, and steps and stages of
-// multipliers.
+// The parts of path-pair's search that need no scene: its clock, queue of nodes, and multipliers.
 
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/search/node.hpp"

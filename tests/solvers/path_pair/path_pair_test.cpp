@@ -1,5 +1,4 @@
-// path-pair as a whole: the same optima as other solvers, and answers that are true for any deadline and
-// mode.
+// path-pair as a whole: the optima of other solvers, and true answers for any deadline and mode.
 
 #include "conelane/bound_certificate.hpp"
 #include "conelane/check.hpp"
@@ -10,6 +9,7 @@
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
+#include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -59,10 +59,26 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 12);
         const RldReport expected = solve(*complete, scene, {});
-        for (const PathPairOptions& options : ablations) {
+        for (const PathPairOptions& options : ablations)
             (void)tests::agrees(solve(*make_path_pair_solver(options), scene, {}), expected);
-        }
     }
+}
+
+/// Without the frontiers, and with the smoothed ascent at the first step, on strewn cones that are dense.
+TEST(PathPair, AgreesWithCbcAfterASmoothedAscent) {
+    PathPairOptions options{.search_frontiers = false};
+    options.tuning.ascent.smoothed_step = 0;
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver(options);
+    const std::unique_ptr<RldSolver> cbc = kCbc.entry.make(Formulation::tight);
+    int feasible = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::strewn_scene(8 + seed % 7, 12.0, 8.0, seed);
+        RldParameters parameters;
+        if (seed % 3 == 0) parameters.pairing = Pairing::paper;
+        if (tests::agrees(solve(*path_pair, scene, parameters), solve(*cbc, scene, parameters))) ++feasible;
+    }
+    EXPECT_GT(feasible, 20);
 }
 
 /// The optimum as a start is kept, another lane graph is improved, an invalid one is dropped.
@@ -122,8 +138,7 @@ TEST(PathPair, EndsWhereEverythingTies) {
                 const Point step(static_cast<double>(id / 3), static_cast<double>(id % 3) - 1.0);
                 scene.cones.push_back({id, Point(1.0, 0.0) + spacing_m * step});
             }
-            RldParameters parameters;
-            parameters.theta_t = theta_t;
+            RldParameters parameters{.theta_t = theta_t};
             (void)tests::agrees(solve(*path_pair, scene, parameters), solve(*cbc, scene, parameters));
         }
     }
@@ -169,7 +184,7 @@ TEST(PathPair, ADeadlineAtAnyCheckMakesNoFalseProof) {
     int cut_short = 0;
     int rises = 0;
     std::uint64_t run = 0;
-    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 30), {});
         SearchClock no_limit;
         ArcGraph graph;
@@ -218,8 +233,7 @@ TEST(PathPair, TakesLargeConeSets) {
             const double x = ahead(random);
             scene.cones.push_back({id, {x, across(random)}});
         }
-        RldParameters parameters;
-        parameters.pairing = pairing;
+        RldParameters parameters{.pairing = pairing};
         const RldReport report = solve(*solver, scene, parameters, 100.0);
         ASSERT_NE(report.status, SolveStatus::error);
         if (!report.lane_graph) continue;
@@ -327,16 +341,15 @@ TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = colored_scene(seed, 14);
-        RldParameters parameters;
-        parameters.d_gap = 9.0;
-        parameters.d_clear = 0.5;
-        parameters.theta_gap = 0.5;
-        parameters.nearest_of_edge = static_cast<double>(seed % 6);
-        parameters.nearest_of_gap = static_cast<double>(seed % 9);
-        parameters.d_side = seed % 3 == 0 ? 2.5 : 0.0;
-        parameters.w_color = 0.3;
-        parameters.use_confidence = true;
-        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
+        RldParameters parameters{.w_color = 0.3,
+                                 .use_confidence = true,
+                                 .d_gap = 9.0,
+                                 .theta_gap = 0.5,
+                                 .d_clear = 0.5,
+                                 .d_side = seed % 3 == 0 ? 2.5 : 0.0,
+                                 .nearest_of_edge = static_cast<double>(seed % 6),
+                                 .nearest_of_gap = static_cast<double>(seed % 9),
+                                 .learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5)};
         const BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
         const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
         EXPECT_THAT(verdict.violations, testing::IsEmpty());
@@ -379,17 +392,9 @@ TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
 /// A clique of a certificate may rest on a gap: two edges that meet at an angle that only edges within s_crit
 /// may have. Without gaps they may go together nowhere, since one of them is not allowed.
 TEST(PathPairCertificate, CliquesMayRestOnGaps) {
-    // Six metres straight on to a pair of cones 2.8 m apart, and a third cone at an angle of 1 rad from
-    // straight on.
-    Scene scene;
-    const std::vector<Point> at{{0.0, 0.0}, {7.0, 0.0}, {9.8, 0.0}, {8.5, 2.34}};
-    for (const Point& position : at)
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
-    RldParameters parameters;
-    parameters.d_gap = 9.0;
-    parameters.theta_gap = 0.5;
-    parameters.t_crit = 100.0;
-    parameters.d_min = 0.1;
+    // Six metres straight on to a pair of cones 2.8 m apart, and a third one at an angle of 1 rad.
+    const Scene scene = tests::cones_at({{0.0, 0.0}, {7.0, 0.0}, {9.8, 0.0}, {8.5, 2.34}});
+    RldParameters parameters{.d_min = 0.1, .t_crit = 100.0, .d_gap = 9.0, .theta_gap = 0.5};
     BoundCertificate certificate{std::vector<double>(4, 0.0), {{{{0, 1}, {1, 3}}, 0.1}}, 0.0, -100.0};
     EXPECT_THAT(verify_bound(scene, parameters, certificate).violations, testing::IsEmpty());
     certificate.cliques.front().edges = {{0, 1}, {1, 2}};
@@ -408,8 +413,7 @@ TEST(PathPair, BranchingAloneFindsTheOptimum) {
     std::int64_t nodes = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        RldParameters parameters;
-        parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+        RldParameters parameters{.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper};
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 8), parameters);
         const RldReport expected = exhaustive->solve(problem, {});
         const RldReport report = branching->solve(problem, {});
@@ -423,12 +427,9 @@ TEST(PathPair, BranchingAloneFindsTheOptimum) {
 /// If edges cost more than they gain, the rest of a leg has a positive cost too: arcs are dropped only by the
 /// sum of both parts of a leg.
 TEST(PathPair, FixesNoArcOfTheOptimumWhereEdgesCostMoreThanTheyGain) {
-    RldParameters parameters;
-    parameters.w_b = 0.05;
-    parameters.w_s = 1.0;
+    RldParameters parameters{.w_s = 1.0, .w_b = 0.05};
     const std::unique_ptr<RldSolver> fixing = make_path_pair_solver();
-    PathPairOptions options;
-    options.fix_arcs = false;
+    PathPairOptions options{.fix_arcs = false};
     const std::unique_ptr<RldSolver> keeping = make_path_pair_solver(options);
     int dear = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {

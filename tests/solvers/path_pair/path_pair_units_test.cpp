@@ -4,8 +4,12 @@
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/leg_search.hpp"
 #include "solvers/path_pair/bound/multipliers.hpp"
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/bound/smoothed_ascent.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
+#include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -25,9 +29,8 @@ struct SceneWithMultipliers {
         residual.assign(graph, tests::near_to_far(graph).kinds[0].start, clock);
         multipliers.cone.assign(cones, 0.0);
         boost::random::mt19937_64 random(seed);
-        for (double& multiplier : multipliers.cone) {
+        for (double& multiplier : multipliers.cone)
             multiplier = boost::random::uniform_real_distribution<double>(0.0, 0.5)(random);
-        }
         do {
             reduce(graph, cliques, multipliers, residual, edge_multiplier, reduced);
             start.clear();
@@ -60,9 +63,8 @@ struct SceneWithMultipliers {
             used[head] = 1;
             leg.push_back(a);
             if (end[at] < kUnreachable) visit(leg, cost + end[at]);
-            for (int p = residual.out_start[at]; p < residual.out_start[at + 1]; ++p) {
+            for (int p = residual.out_start[at]; p < residual.out_start[at + 1]; ++p)
                 extend(residual.out_arc[to_index(p)], cost + residual.out_cost[to_index(p)]);
-            }
             leg.pop_back();
             used[head] = 0;
         };
@@ -106,6 +108,54 @@ class Offers {
     Incumbent incumbent{graph};
 };
 
+/// The multipliers need no repair. Their bound is below the optimum, in the mean by 1.24, the gap of the
+/// linear program included.
+TEST(PathPairSmoothedAscent, FindsMultipliersOfAGoodBound) {
+    const AscentTuning tuning;
+    double gap = 0.0;
+    int count = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        SceneWithMultipliers scene(seed, 16);
+        const LegSystem system = tests::near_to_far(scene.graph);
+        Multipliers multipliers;
+        SmoothedAscent smoothed(scene.graph, system, tuning, scene.clock);
+        ASSERT_TRUE(smoothed.find(scene.residual, scene.cliques, multipliers));
+        ASSERT_EQ(to_index(scene.cliques.size()), multipliers.clique.size());
+        Decisions decisions;
+        decisions.reset(scene.graph);
+        PairRelaxation relaxation(scene.graph, system, scene.cliques, decisions, scene.clock);
+        const std::vector<double> cones = multipliers.cone;
+        const double bound = relaxation.evaluate(scene.residual, multipliers);
+        for (std::size_t v = 0; v < cones.size(); ++v) {
+            EXPECT_GE(cones[v], 0.0);
+            EXPECT_NEAR(multipliers.cone[v], cones[v], 1e-9) << "a cycle gained";
+        }
+        const RldReport report =
+            make_path_pair_solver()->solve(make_problem(tests::random_scene(seed, 16), {}), {});
+        if (report.status != SolveStatus::optimal) continue;
+        EXPECT_LE(bound, *report.objective + 1e-9);
+        gap += *report.objective - bound;
+        ++count;
+    }
+    ASSERT_GT(count, 20);
+    EXPECT_LT(gap / count, 1.5);
+}
+
+TEST(PathPairSmoothedAscent, LeavesTheMultipliersOnceTheTimeHasEnded) {
+    const SceneWithMultipliers scene(1);
+    const AscentTuning tuning{.sweeps = 2000};
+    const LegSystem system = tests::near_to_far(scene.graph);
+    for (int looks = 0; looks < 20; ++looks) {
+        tests::FakeSearchClock clock(looks + 1);
+        SmoothedAscent smoothed(scene.graph, system, tuning, clock);
+        Multipliers multipliers = scene.multipliers;
+        CliquePool cliques;
+        EXPECT_FALSE(smoothed.find(scene.residual, cliques, multipliers));
+        EXPECT_EQ(multipliers.cone, scene.multipliers.cone);
+    }
+}
+
 TEST(PathPairIncumbent, TakesLaneGraphsThatCostLess) {
     Offers lane(six_cone_lane(), {});
     EXPECT_TRUE(lane.offer({1, 2}, {3, 4, 5}));
@@ -137,9 +187,7 @@ TEST(PathPairIncumbent, TakesNoLaneGraphWithoutTwoFarEndsThatFit) {
 
 /// Even if they have no cost: (5) allows a cone at most two edges.
 TEST(PathPairIncumbent, TakesNoLegsThatPassOneCone) {
-    RldParameters parameters;
-    parameters.t_crit = 1e6;
-    parameters.d_min = 0.1;
+    RldParameters parameters{.d_min = 0.1, .t_crit = 1e6};
     Offers lane(six_cone_lane(), parameters);
     lane.incumbent.set_cutoff(1e6);
     EXPECT_FALSE(lane.offer({0, 1, 2}, {3, 1, 5}));
@@ -147,8 +195,7 @@ TEST(PathPairIncumbent, TakesNoLegsThatPassOneCone) {
 }
 
 TEST(PathPairIncumbent, PaysForEveryTurn) {
-    RldParameters parameters;
-    parameters.t_crit = 1e6;
+    RldParameters parameters{.t_crit = 1e6};
     const Offers lane(six_cone_lane(), parameters);
     const double corner = 0.5 * std::pow(std::numbers::pi / 2.0 / 0.9, 4);
     const double across = lane.incumbent.leg_cost(lane.leg({1, 4}));
@@ -156,9 +203,7 @@ TEST(PathPairIncumbent, PaysForEveryTurn) {
 }
 
 TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
-    RldParameters parameters;
-    parameters.t_crit = 1e6;
-    parameters.d_min = 1.0;
+    RldParameters parameters{.d_min = 1.0, .t_crit = 1e6};
     EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 2})) << "both legs end at 2";
     parameters = {};
     parameters.d_min = 3.6;
@@ -172,12 +217,11 @@ TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
 
 /// For one boundary alone: each cone has half of its edges, and its turn.
 TEST(PathPairArcGraph, SharesOfConesAddUpToTheLane) {
-    LaneGraphProblem problem;
+    LaneGraphProblem problem;  // GCC warns falsely of a member where all are named in braces
     problem.cone_count = 3;
     problem.near = {true, true, false};
-    for (const std::size_t i : {0U, 1U}) {
+    for (const std::size_t i : {0U, 1U})
         problem.edges.push_back({i, i + 1, 0.0, 0.0, 0.0, 0.0, -1.0, true, false});
-    }
     problem.turns.push_back({0, 1, 1, 0.0, 0.0, 0.25, false});
     ArcGraph graph;
     SearchClock clock;
@@ -218,8 +262,7 @@ TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
     }
 }
 
-/// Earlier walks are only a start: labels are the same from the walks of other costs, of another graph, and
-/// from none.
+/// Earlier walks are only a start: labels are the same from walks of other costs or graphs, and from none.
 TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
     SearchClock clock;
     LegBounds bounds(clock);
@@ -247,12 +290,9 @@ TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
     EXPECT_GT(started, 500);
 }
 
-/// A loop over a far square of cones costs less than 0: its multipliers rise until it costs 0, and no
-/// further.
+/// A loop over a far square of cones costs less than 0: its multipliers rise just until it costs 0.
 TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
-    RldParameters parameters;
-    parameters.theta_t = 2.0;
-    parameters.t_crit = 100.0;
+    RldParameters parameters{.theta_t = 2.0, .t_crit = 100.0};
     Scene scene = tests::cones_at({{4, 0}, {7.2, 0}, {7.2, 3.2}, {4, 3.2}});
     ArcGraph graph;
     SearchClock clock;
@@ -329,9 +369,8 @@ TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
         const std::size_t edges = to_index(s.graph.edge_count());
         boost::random::mt19937_64 random(seed);
         std::vector<double> use;
-        for (std::size_t e = 0; e < edges; ++e) {
+        for (std::size_t e = 0; e < edges; ++e)
             use.push_back(boost::random::uniform_real_distribution<double>(0.0, 1.0)(random));
-        }
         CliquePool pool;
         CliqueSeparation separation;
         SearchClock clock;
@@ -345,9 +384,8 @@ TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
                 for (const int f : clique) ASSERT_TRUE(e == f || s.graph.incompatible(e, f));
             }
             EXPECT_GT(sum, 1.0);
-            for (int e = 0; e < s.graph.edge_count(); ++e) {
+            for (int e = 0; e < s.graph.edge_count(); ++e)
                 EXPECT_FALSE(std::ranges::all_of(clique, [&](int f) { return s.graph.incompatible(e, f); }));
-            }
         }
     }
     EXPECT_GT(found, 100);

@@ -163,8 +163,7 @@ TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
         std::vector<int> arcs;
         while (window.next(legs, arcs)) {
             EXPECT_TRUE(std::ranges::is_sorted(arcs));
-            std::vector<int> others;
-            for (const int a : arcs) others.push_back(s.whole.arc[to_index(a)]);
+            std::vector<int> others = mapped(arcs, [&](const int a) { return s.whole.arc[to_index(a)]; });
             for (const std::vector<int>& leg : legs) {
                 for (const int arc : leg) EXPECT_EQ(std::erase(others, arc), 1U);
             }
@@ -206,9 +205,8 @@ Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     Graph s(problem);
     tests::FakeSearchClock clock(looks + 1);
     BranchAndBound search(s.arcs, s.system, s.incumbent, options, clock);
-    Stopped result;
-    result.outcome = search.run();
-    result.cost = s.incumbent.cutoff();
+    const auto outcome = search.run();
+    Stopped result{.cost = s.incumbent.cutoff(), .outcome = outcome};
     if (s.incumbent.found()) {
         LaneGraph lane;
         for (const int edge : s.incumbent.edges()) {
@@ -222,8 +220,7 @@ Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     return result;
 }
 
-/// In dense scenes, a search that continues has a lane graph that costs no more, and with windows it costs
-/// less.
+/// In dense scenes, a search that continues has a lane graph that costs no more; with windows it costs less.
 TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
     double with = 0.0;
     double without = 0.0;
@@ -239,8 +236,7 @@ TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
             EXPECT_LE(result.outcome.bound, result.cost + 1e-6);
             before = result.cost;
             stopped += result.outcome.complete ? 0 : 1;
-            PathPairOptions options;
-            options.search_windows = false;
+            PathPairOptions options{.search_windows = false};
             const Stopped plain = search(scene, options, looks);
             with += result.cost;
             without += plain.cost;
@@ -263,9 +259,7 @@ TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
         for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", pairing " << static_cast<int>(pairing));
             const Scene scene = tests::strewn_scene(70, 25.0, 25.0, seed);
-            RldParameters parameters;
-            parameters.pairing = pairing;
-            parameters.d_near = d_near_m;
+            RldParameters parameters{.d_near = d_near_m, .pairing = pairing};
             const LaneGraphProblem problem = make_problem(scene, parameters);
             const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
             const RldReport first = solver->solve(problem, {.limits = {.time_limit_ms = 150.0}});
