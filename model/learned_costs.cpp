@@ -81,8 +81,9 @@ double LearnedNetwork::operator()(std::span<const double> features) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < features.size(); ++i) sum += linear[i] * features[i];
     if (output.empty()) return sum;
-    std::array<double, kMaxUnits> unit{};
+    std::array<double, kMaxUnits> unit;  // the first `count` only
     const std::size_t count = output.size();
+    std::fill_n(unit.begin(), count, 0.0);
     for (std::size_t i = 0; i < features.size(); ++i) {
         const double* const row = hidden.data() + i * count;
         const double feature = features[i];

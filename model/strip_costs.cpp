@@ -1,7 +1,5 @@
 #include "model/strip_costs.hpp"
 
-#include <algorithm>
-
 namespace conelane {
 namespace {
 
@@ -91,45 +89,14 @@ std::span<const LearnedFeature> learned_features(StripPart part) {
 }
 
 StripCosts hand_set_strip_costs() {
-    struct Weight {
-        StripPart part;
-        std::string_view feature;
-        double weight;
-    };
-    using P = StripPart;
-    constexpr Weight kWeights[]{{P::edge, "length", -1.0},
-                                {P::edge, "gap", 0.5},
-                                {P::edge, "stretch", 0.1},
-                                {P::edge, "short", 0.5},
-                                {P::edge, "beside", 0.5},
-                                {P::edge, "gap_beside", 0.5},
-                                {P::triangle, "inside", 1.0},
-                                {P::triangle, "wide", 0.3},
-                                {P::triangle, "narrow", 0.5},
-                                {P::triangle, "squared_off", 0.05},
-                                {P::triangle, "rotation", 0.05},
-                                {P::triangle, "squared_rotation", 0.1},
-                                {P::triangle, "squared_lead_before", 0.1},
-                                {P::triangle, "squared_lead_after", 0.1},
-                                {P::triangle, "squared_width_change", 0.05},
-                                {P::start, "aside", 0.3},
-                                {P::start, "ahead", 0.3},
-                                {P::start, "squared_skew", 0.5},
-                                {P::start, "squared_off", 0.1},
-                                {P::start, "between", 1.0},
-                                {P::start, "behind", 0.3},
-                                {P::turn, "squared_angle", 0.8},
-                                {P::turn, "sharp", 0.5},
-                                {P::turn, "inside", 0.5},
-                                {P::turn, "unevenness", 0.1},
-                                {P::end, "in_view", 0.2},
-                                {P::end, "on_in_view", 0.5}};
+    // In the order of the features above.
     StripCosts costs = StripCosts::zero();
-    for (const auto& [part, name, weight] : kWeights) {
-        const auto features = learned_features(part);
-        const auto found = std::ranges::find(features, name, &LearnedFeature::name);
-        costs.of(part).linear.at(static_cast<std::size_t>(found - features.begin())) = weight;
-    }
+    costs.of(StripPart::edge).linear = {0.0, -1.0, 0.5, 0.1, 0.5, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0};
+    costs.of(StripPart::triangle).linear = {0.0, 1.0, 0.3, 0.5,  0.0, 0.05, 0.0, 0.1,
+                                            0.0, 0.1, 0.0, 0.05, 0.0, 0.05, 0.1, 0.0};
+    costs.of(StripPart::start).linear = {0.0, 0.3, 0.0, 0.3, 0.0, 0.0, 0.0, 0.5, 0.0, 0.1, 1.0, 0.3, 0.0};
+    costs.of(StripPart::turn).linear = {0.0, 0.0, 0.8, 0.5, 0.0, 0.5, 0.1, 0.0, 0.0, 0.0, 0.0};
+    costs.of(StripPart::end).linear = {0.0, 0.2, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0};
     return costs;
 }
 

@@ -36,14 +36,29 @@ double gap(double length_m) {
     return std::max(0.0, length_m - kGapBegins_m) / kGapScale_m;
 }
 
-/// How far a point is inside a triangle, from its nearest side [m]; not positive outside.
-double depth_m(const Point& p, const Point& a, const Point& b, const Point& c) {
-    const double side = cross(b - a, c - a) > 0.0 ? 1.0 : -1.0;
-    const auto from = [&](const Point& s, const Point& t) {
-        return side * cross(t - s, p - s) / std::max((t - s).norm(), kMinChord_m);
-    };
-    return std::min({from(a, b), from(b, c), from(c, a)});
-}
+/// How far points are inside a triangle.
+class Depth {
+  public:
+    Depth(const Point& a, const Point& b, const Point& c)
+        : corners_{a, b, c}, sides_{b - a, c - b, a - c}, side_(cross(b - a, c - a) > 0.0 ? 1.0 : -1.0) {}
+    /// From its nearest side [m]; 0 outside.
+    [[nodiscard]] double of(const Point& p) const {
+        std::array<double, 3> doubled_areas{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            doubled_areas[k] = side_ * cross(sides_[k], p - corners_[k]);
+            if (doubled_areas[k] <= 0.0) return 0.0;
+        }
+        const auto height = [&](std::size_t k) {
+            return doubled_areas[k] / std::max(sides_[k].norm(), kMinChord_m);
+        };
+        return std::min({height(0), height(1), height(2)});
+    }
+
+  private:
+    std::array<Point, 3> corners_;
+    std::array<Point, 3> sides_;
+    double side_;
+};
 
 }  // namespace
 
@@ -155,10 +170,10 @@ std::array<double, kStripStartFeatures> StripFeatures::start(std::size_t left, s
     double behind = 0.0;
     const Point middle = 0.5 * (at(left) + at(right));
     const double reach_m = std::max(distance_m_[left], distance_m_[right]);
+    const Depth depth({}, at(left), at(right));
     for (std::size_t k = 0; k < at_.size(); ++k) {
         if (k == left || k == right) continue;
-        if (distance_m_[k] < reach_m)
-            between += ramp(depth_m(at(k), {0.0, 0.0}, at(left), at(right)) / kRamp_m);
+        if (distance_m_[k] < reach_m) between += ramp(depth.of(at(k)) / kRamp_m);
         for (const std::size_t end : {left, right})
             behind += hat((at(k) - at(end)).squaredNorm(), 6.0) * ramp((ahead_m_[end] - ahead_m_[k]) / 2.0);
     }
@@ -223,10 +238,11 @@ double StripFeatures::inside_of(std::size_t a, std::size_t b, std::size_t c) con
     // No point of the triangle is farther from the first cone than one of the other two.
     const double longest_m =
         std::sqrt(std::max((at(b) - at(a)).squaredNorm(), (at(c) - at(a)).squaredNorm()));
+    const Depth depth(at(a), at(b), at(c));
     double sum = 0.0;
     for (const auto& [distance_m, k] : around_[a]) {
         if (distance_m > longest_m) break;
-        if (k != b && k != c) sum += ramp(depth_m(at(k), at(a), at(b), at(c)) / kRamp_m);
+        if (k != b && k != c) sum += ramp(depth.of(at(k)) / kRamp_m);
     }
     return std::min(sum, 2.0);
 }

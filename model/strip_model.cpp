@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -21,167 +22,123 @@ std::int32_t index(std::size_t value) {
     return static_cast<std::int32_t>(value);
 }
 
-/// A term, unless there is no such column.
-void add(RowWriter& rows, int column, double coefficient) {
-    if (column >= 0) rows.add(column, coefficient);
-}
-
 }  // namespace
 
 std::optional<StopReason> StripModel::build(const Deadline& deadline) {
     if (problem_->turn_costs.size() > kMaxProgramEntries) return StopReason::memory;
-    add_columns();
-    RowWriter rows(program_, &deadline);
-    add_rung_rows(rows);
-    add_cone_rows(rows);
-    add_edge_rows(rows);
-    (void)rows.stop();
-    return rows.stopped_by();
+    label_rows();
+    add_lane_columns();
+    for (const bool is_left : {true, false}) add_boundary_columns(is_left);
+    RowWriter writer(program_, &deadline);
+    for (const ProgramRow& row : std::exchange(rows_, {})) {
+        if (writer.stop()) break;
+        writer.begin(row.label, row.lower, row.upper);
+        for (const auto& [column, coefficient] : row.terms) writer.add(column, coefficient);
+        writer.end();
+    }
+    (void)writer.stop();
+    return writer.stopped_by();
 }
 
-void StripModel::add_columns() {
-    const StripProblem& problem = *problem_;
-    const auto of_rung = [&](std::string_view family, const StripRung& rung, double cost) {
-        return program_.add_column({family, {index(rung.left), index(rung.right)}}, cost, true);
-    };
-    for (const StripRung& rung : problem.rungs) {
-        start_.push_back(rung.may_start ? of_rung("s", rung, rung.start_cost) : -1);
-        end_.push_back(rung.may_end ? of_rung("t", rung, 0.0) : -1);
-    }
-    for (const StripTriangle& triangle : problem.triangles) {
-        const StripRung& from = problem.rungs[triangle.from];
-        const StripRung& to = problem.rungs[triangle.to];
-        const Label label = triangle.is_left
-                                ? Label{"y_L", {index(from.left), index(to.left), index(from.right)}}
-                                : Label{"y_R", {index(from.left), index(from.right), index(to.right)}};
-        triangle_.push_back(program_.add_column(label, triangle.cost, true));
-    }
-    for (std::size_t side = 0; side < 2; ++side) {
-        SideColumns& columns = sides_[side];
-        columns.turn.assign(problem.turn_costs.size(), -1);
-        std::vector<char> may_begin(problem.graph.cone_count, 0);
-        std::vector<char> may_end(problem.graph.cone_count, 0);
-        for (const StripRung& rung : problem.rungs) {
-            const std::size_t cone = side == 0 ? rung.left : rung.right;
-            may_begin[cone] = static_cast<char>(may_begin[cone] != 0 || rung.may_start);
-            may_end[cone] = static_cast<char>(may_end[cone] != 0 || rung.may_end);
-        }
-        for (std::size_t cone = 0; cone < problem.graph.cone_count; ++cone) {
-            const auto& incident = problem.graph.incident[cone];
-            for (std::size_t in = 0; in < incident.size(); ++in) {
-                const std::size_t other = problem.other(incident[in], cone);
-                const double cost = problem.end_cost(cone, in);
-                const auto of_edge = [&](std::string_view family, std::size_t from, std::size_t to,
-                                         double edge_cost) {
-                    return program_.add_column({family, {index(from), index(to)}}, edge_cost, false);
-                };
-                columns.begin.push_back(may_begin[cone] != 0 ? of_edge(kBegin[side], cone, other, 0.0) : -1);
-                columns.end.push_back(may_end[cone] != 0 ? of_edge(kEnd[side], other, cone, cost) : -1);
-                for (std::size_t out = 0; out < incident.size(); ++out) {
-                    const double turn = problem.turn_cost(cone, side == 0, in, out);
-                    if (!(turn < StripProblem::kForbidden)) continue;
-                    const std::size_t to = problem.other(incident[out], cone);
-                    columns.turn[problem.turns_of[cone] + in * incident.size() + out] = program_.add_column(
-                        {kTurn[side], {index(other), index(cone), index(to)}}, turn, false);
-                }
-            }
-        }
-    }
-}
-
-/// What enters a rung leaves it; the lane begins once.
-void StripModel::add_rung_rows(RowWriter& rows) const {
-    const StripProblem& problem = *problem_;
-    rows.begin({"start"}, 1.0, 1.0);
-    for (const int column : start_) add(rows, column, 1.0);
-    rows.end();
-    std::vector<std::vector<int>> entering(problem.rungs.size());
-    for (std::size_t k = 0; k < problem.triangles.size(); ++k)
-        entering[problem.triangles[k].to].push_back(triangle_[k]);
-    for (std::size_t r = 0; r < problem.rungs.size() && !rows.stop(); ++r) {
-        const StripRung& rung = problem.rungs[r];
-        rows.begin({"rung", {index(rung.left), index(rung.right)}}, 0.0, 0.0);
-        for (const int column : entering[r]) rows.add(column, 1.0);
-        add(rows, start_[r], 1.0);
-        for (std::size_t k = problem.triangles_of[r]; k < problem.triangles_of[r + 1]; ++k)
-            rows.add(triangle_[k], -1.0);
-        add(rows, end_[r], -1.0);
-        rows.end();
-    }
-}
-
-/// A cone is entered once at most. A boundary begins and ends where the lane does.
-void StripModel::add_cone_rows(RowWriter& rows) const {
+void StripModel::label_rows() {
     const StripProblem& problem = *problem_;
     const std::size_t n = problem.graph.cone_count;
-    std::vector<std::vector<int>> entering(n);
-    std::array<std::vector<std::vector<int>>, 2> starts{std::vector<std::vector<int>>(n),
-                                                        std::vector<std::vector<int>>(n)};
-    auto ends = starts;
-    for (std::size_t r = 0; r < problem.rungs.size(); ++r) {
-        const std::array cones{problem.rungs[r].left, problem.rungs[r].right};
-        for (std::size_t side = 0; side < 2; ++side) {
-            if (start_[r] >= 0) starts[side][cones[side]].push_back(start_[r]);
-            if (start_[r] >= 0) entering[cones[side]].push_back(start_[r]);
-            if (end_[r] >= 0) ends[side][cones[side]].push_back(end_[r]);
-        }
-    }
-    for (std::size_t k = 0; k < problem.triangles.size(); ++k) {
-        const StripRung& to = problem.rungs[problem.triangles[k].to];
-        entering[problem.triangles[k].is_left ? to.left : to.right].push_back(triangle_[k]);
-    }
-    const auto balance = [&](std::string_view family, std::size_t cone, const std::vector<int>& of_edges,
-                             const std::vector<int>& of_rungs) {
-        rows.begin({family, {index(cone)}}, 0.0, 0.0);
-        for (std::size_t place = 0; place < problem.degree(cone); ++place)
-            add(rows, of_edges[problem.places_of[cone] + place], 1.0);
-        for (const int column : of_rungs) rows.add(column, -1.0);
-        rows.end();
+    const auto add = [&](std::size_t count, double lower, double upper, const auto& label) {
+        for (std::size_t k = 0; k < count; ++k) rows_.push_back({label(k), {}, lower, upper});
+        return rows_.size() - count;
     };
-    for (std::size_t cone = 0; cone < n && !rows.stop(); ++cone) {
-        rows.begin({"cone_once", {index(cone)}}, -kInfinity, 1.0);
-        for (const int column : entering[cone]) rows.add(column, 1.0);
-        rows.end();
-        for (std::size_t side = 0; side < 2; ++side) {
-            balance(kBegins[side], cone, sides_[side].begin, starts[side][cone]);
-            balance(kEnds[side], cone, sides_[side].end, ends[side][cone]);
-        }
+    (void)add(1, 1.0, 1.0, [](std::size_t) { return Label{"start"}; });
+    rung_row_ = add(problem.rungs.size(), 0.0, 0.0, [&](std::size_t r) {
+        return Label{"rung", {index(problem.rungs[r].left), index(problem.rungs[r].right)}};
+    });
+    once_row_ = add(n, -kInfinity, 1.0, [](std::size_t cone) { return Label{"cone_once", {index(cone)}}; });
+    std::vector<std::pair<std::int32_t, std::int32_t>> edges;  // by place: its other cone and the cone
+    for (std::size_t cone = 0; cone < n; ++cone) {
+        for (const std::size_t edge : problem.graph.incident[cone])
+            edges.emplace_back(index(problem.other(edge, cone)), index(cone));
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+        const auto of_cones = [&](std::string_view family) {
+            return add(n, 0.0, 0.0, [&](std::size_t cone) { return Label{family, {index(cone)}}; });
+        };
+        SideRows& rows = side_rows_[side];
+        rows.begins = of_cones(kBegins[side]);
+        rows.ends = of_cones(kEnds[side]);
+        rows.goes_on = add(edges.size(), 0.0, 0.0, [&](std::size_t k) {
+            return Label{kGoesOn[side], {edges[k].first, edges[k].second}};
+        });
+        rows.comes = add(edges.size(), 0.0, 0.0, [&](std::size_t k) {
+            return Label{kComes[side], {edges[k].second, edges[k].first}};
+        });
     }
 }
 
-/// A directed edge of a side: its triangles arrive by a turn or begin, and go on by a turn or end.
-void StripModel::add_edge_rows(RowWriter& rows) const {
+int StripModel::add_column(const Label& label, double cost, bool integer,
+                           std::initializer_list<std::pair<std::size_t, double>> entries) {
+    const int column = program_.add_column(label, cost, integer);
+    for (const auto& [row, coefficient] : entries) rows_[row].terms.emplace_back(column, coefficient);
+    return column;
+}
+
+/// Starts and ends of the lane, and triangles.
+void StripModel::add_lane_columns() {
     const StripProblem& problem = *problem_;
-    for (std::size_t side = 0; side < 2; ++side) {
-        const SideColumns& columns = sides_[side];
-        // By cone and place: triangles that arrive at the cone by that edge, and those that leave it.
-        std::vector<std::vector<int>> arriving(columns.end.size());
-        std::vector<std::vector<int>> leaving(columns.end.size());
-        for (std::size_t k = 0; k < problem.triangles.size(); ++k) {
-            const StripTriangle& triangle = problem.triangles[k];
-            if (triangle.is_left != (side == 0)) continue;
-            const auto cone = [&](const StripRung& rung) { return side == 0 ? rung.left : rung.right; };
-            arriving[problem.places_of[cone(problem.rungs[triangle.to])] + triangle.in].push_back(
-                triangle_[k]);
-            leaving[problem.places_of[cone(problem.rungs[triangle.from])] + triangle.out].push_back(
-                triangle_[k]);
-        }
-        for (std::size_t cone = 0; cone < problem.graph.cone_count; ++cone) {
-            const std::size_t degree = problem.degree(cone);
-            const int* const turns = columns.turn.data() + problem.turns_of[cone];
-            for (std::size_t place = 0; place < degree && !rows.stop(); ++place) {
-                const std::size_t at = problem.places_of[cone] + place;
-                const auto other = index(problem.other(problem.graph.incident[cone][place], cone));
-                rows.begin({kGoesOn[side], {other, index(cone)}}, 0.0, 0.0);
-                for (const int column : arriving[at]) rows.add(column, 1.0);
-                add(rows, columns.end[at], -1.0);
-                for (std::size_t out = 0; out < degree; ++out) add(rows, turns[place * degree + out], -1.0);
-                rows.end();
-                rows.begin({kComes[side], {index(cone), other}}, 0.0, 0.0);
-                for (const int column : leaving[at]) rows.add(column, 1.0);
-                add(rows, columns.begin[at], -1.0);
-                for (std::size_t in = 0; in < degree; ++in) add(rows, turns[in * degree + place], -1.0);
-                rows.end();
+    const auto& [left, right] = side_rows_;
+    for (std::size_t k = 0; k < problem.rungs.size(); ++k) {
+        const auto& [l, r, may_start, may_end, cost] = problem.rungs[k];
+        const Label::Index cones{index(l), index(r)};
+        start_.push_back(-1);
+        if (may_start)
+            start_.back() = add_column({"s", cones}, cost, true,
+                                       {{0, 1.0},
+                                        {rung_row_ + k, 1.0},
+                                        {once_row_ + l, 1.0},
+                                        {once_row_ + r, 1.0},
+                                        {left.begins + l, -1.0},
+                                        {right.begins + r, -1.0}});
+        if (may_end)
+            add_column({"t", cones}, 0.0, true,
+                       {{rung_row_ + k, -1.0}, {left.ends + l, -1.0}, {right.ends + r, -1.0}});
+    }
+    for (const StripTriangle& t : problem.triangles) {
+        const StripRung& from = problem.rungs[t.from];
+        const StripRung& to = problem.rungs[t.to];
+        const SideRows& rows = rows_of(t.is_left);
+        const Label label = t.is_left ? Label{"y_L", {index(from.left), index(to.left), index(from.right)}}
+                                      : Label{"y_R", {index(from.left), index(from.right), index(to.right)}};
+        triangle_.push_back(add_column(label, t.cost, true,
+                                       {{rung_row_ + t.from, -1.0},
+                                        {rung_row_ + t.to, 1.0},
+                                        {once_row_ + to.of(t.is_left), 1.0},
+                                        {rows.goes_on + problem.places_of[to.of(t.is_left)] + t.in, 1.0},
+                                        {rows.comes + problem.places_of[from.of(t.is_left)] + t.out, 1.0}}));
+    }
+}
+
+/// Turns, and the first and last edges.
+void StripModel::add_boundary_columns(bool is_left) {
+    const StripProblem& problem = *problem_;
+    const std::size_t side = is_left ? 0 : 1;
+    const SideRows& rows = rows_of(is_left);
+    for (std::size_t cone = 0; cone < problem.graph.cone_count; ++cone) {
+        const auto& incident = problem.graph.incident[cone];
+        const bool may_begin = !rows_[rows.begins + cone].terms.empty();
+        const bool may_end = !rows_[rows.ends + cone].terms.empty();
+        const std::size_t first = problem.places_of[cone];
+        for (std::size_t in = 0; in < incident.size(); ++in) {
+            const std::size_t other = problem.other(incident[in], cone);
+            if (may_begin)
+                add_column({kBegin[side], {index(cone), index(other)}}, 0.0, false,
+                           {{rows.comes + first + in, -1.0}, {rows.begins + cone, 1.0}});
+            if (may_end)
+                add_column({kEnd[side], {index(other), index(cone)}}, problem.end_cost(cone, in), false,
+                           {{rows.goes_on + first + in, -1.0}, {rows.ends + cone, 1.0}});
+            for (std::size_t out = 0; out < incident.size(); ++out) {
+                const double turn = problem.turn_cost(cone, is_left, in, out);
+                if (!(turn < StripProblem::kForbidden)) continue;
+                const std::size_t to = problem.other(incident[out], cone);
+                add_column({kTurn[side], {index(other), index(cone), index(to)}}, turn, false,
+                           {{rows.goes_on + first + in, -1.0}, {rows.comes + first + out, -1.0}});
             }
         }
     }
@@ -216,12 +173,7 @@ StripLane StripModel::decode(std::span<const double> point) const {
     StripLane lane{{first.left}, {first.right}};
     for (const std::size_t k : walk(point)) {
         const StripTriangle& triangle = problem_->triangles[k];
-        const StripRung& to = problem_->rungs[triangle.to];
-        if (triangle.is_left) {
-            lane.left.push_back(to.left);
-        } else {
-            lane.right.push_back(to.right);
-        }
+        (triangle.is_left ? lane.left : lane.right).push_back(problem_->entered(triangle));
     }
     return lane;
 }

@@ -3,8 +3,12 @@
 #include "model/binary_program.hpp"
 #include "model/strip_problem.hpp"
 
+#include <array>
+#include <cstddef>
+#include <initializer_list>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -24,10 +28,19 @@ class StripModel {
     [[nodiscard]] std::vector<ProgramRow> separate(std::span<const double> point) const;
 
   private:
-    void add_columns();
-    void add_rung_rows(RowWriter& rows) const;
-    void add_cone_rows(RowWriter& rows) const;
-    void add_edge_rows(RowWriter& rows) const;
+    /// The first row of each family of a side.
+    struct SideRows {
+        std::size_t begins;   ///< by cone
+        std::size_t ends;     ///< by cone
+        std::size_t goes_on;  ///< by cone and place of the edge that arrives
+        std::size_t comes;    ///< by cone and place of the edge that leaves
+    };
+    void label_rows();
+    void add_lane_columns();
+    void add_boundary_columns(bool is_left);
+    int add_column(const Label& label, double cost, bool integer,
+                   std::initializer_list<std::pair<std::size_t, double>> entries);
+    [[nodiscard]] const SideRows& rows_of(bool is_left) const { return side_rows_[is_left ? 0 : 1]; }
     /// The chosen triangles along the lane, from its start.
     [[nodiscard]] std::vector<std::size_t> walk(std::span<const double> point) const;
     [[nodiscard]] std::optional<std::size_t> next(std::span<const double> point, std::size_t rung) const;
@@ -35,16 +48,12 @@ class StripModel {
 
     const StripProblem* problem_;
     BinaryProgram program_;
-    // Columns; -1 for none. By side, left first: cone, place of an edge.
-    std::vector<int> start_;     ///< s by rung
-    std::vector<int> end_;       ///< t by rung
-    std::vector<int> triangle_;  ///< y
-    struct SideColumns {
-        std::vector<int> turn;   ///< f as StripProblem::turn_costs of the left side
-        std::vector<int> begin;  ///< b by cone and place, as StripProblem::end_costs
-        std::vector<int> end;    ///< e
-    };
-    std::array<SideColumns, 2> sides_;
+    std::vector<ProgramRow> rows_;
+    std::size_t rung_row_ = 0;  ///< the first one; by rung
+    std::size_t once_row_ = 0;  ///< by cone
+    std::array<SideRows, 2> side_rows_{};
+    std::vector<int> start_;     ///< column of s by rung; -1 for none
+    std::vector<int> triangle_;  ///< column of y
 };
 
 }  // namespace conelane

@@ -39,6 +39,8 @@ struct StripRung {
     bool may_start;  ///< both cones are near the car, the left one to the left of the right one
     bool may_end;
     double start_cost;  ///< of s; 0 if it may not start
+
+    [[nodiscard]] std::size_t of(bool is_left) const { return is_left ? left : right; }
 };
 
 /// One boundary goes on by an edge, the other one stays: from rung to rung. The triangle is wound so that the
@@ -59,8 +61,8 @@ struct StripProblem {
     static constexpr double kForbidden = std::numeric_limits<double>::infinity();
 
     StripParameters parameters;
-    LaneGraphProblem graph;
-    double reach_m = 0.0;  ///< no triangle has a longer side
+    LaneGraphProblem graph;  ///< without turns, conflicts and costs if the parameters have `costs`
+    double reach_m = 0.0;    ///< no triangle has a longer side
     std::vector<StripRung> rungs;
     std::vector<StripTriangle> triangles;     ///< in the order of the rungs that they leave
     std::vector<std::uint32_t> triangles_of;  ///< by rung its first triangle, and the number of all
@@ -76,6 +78,10 @@ struct StripProblem {
         const auto [row, column] = is_left ? std::pair(in, out) : std::pair(out, in);
         return turn_costs[turns_of[cone] + row * degree(cone) + column];
     }
+    /// The same, and 0 if the boundary has no edge yet.
+    [[nodiscard]] double step_cost(std::size_t cone, bool is_left, std::size_t in, std::size_t out) const {
+        return in == degree(cone) ? 0.0 : turn_cost(cone, is_left, in, out);
+    }
     [[nodiscard]] double end_cost(std::size_t cone, std::size_t in) const {
         return end_costs[places_of[cone] + in];
     }
@@ -85,6 +91,10 @@ struct StripProblem {
     }
     [[nodiscard]] std::span<const StripTriangle> leaving(std::size_t rung) const {
         return std::span(triangles).subspan(triangles_of[rung], triangles_of[rung + 1] - triangles_of[rung]);
+    }
+    /// The cone that a triangle enters.
+    [[nodiscard]] std::size_t entered(const StripTriangle& triangle) const {
+        return rungs[triangle.to].of(triangle.is_left);
     }
 };
 

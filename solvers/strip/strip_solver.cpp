@@ -2,7 +2,6 @@
 
 #include "model/deadline.hpp"
 #include "solvers/strip/costs_to_go.hpp"
-#include "solvers/strip/strip_states.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +19,7 @@ struct Label {
     double cost = 0.0;    ///< without multipliers
     double unused = 0.0;  ///< sum of the multipliers of the cones that it does not use
     std::int32_t parent = -1;
-    std::int32_t cone = -1;     ///< that its last step enters; of a start the left one
+    std::int32_t by = 0;        ///< its last triangle; of a start -1 less the rung
     std::int32_t next_at = -1;  ///< the label before it that was expanded in the same state
     bool is_end = false;
 };
@@ -35,18 +34,14 @@ class StripSolver::Search {
         options_ = &options;
         words_ = (problem.graph.cone_count + 63) / 64;
         const Stopwatch watch;
-        const bool is_ready = states_.build(problem);
-        report.build_ms = watch.elapsed_ms();
         report.rounds = 1;
-        if (!is_ready) {
-            report.status = SolveStatus::stopped;
-            report.stopped_by = StopReason::memory;
-            return;
-        }
-        incumbent_ = StripProblem::kForbidden;
-        to_go_.begin(problem, states_);
-        if (!to_go_.compute(deadline)) {
-            stop(deadline.passed() ? StopReason::time : StopReason::iterations, report);
+        lanes_.clear();
+        open_ = {};
+        labels_.clear();
+        const auto stopped_by = to_go_.compute(problem, deadline);
+        report.build_ms = watch.elapsed_ms();
+        if (stopped_by) {
+            stop(*stopped_by, report);
         } else {
             search(deadline, report);
         }
@@ -56,11 +51,8 @@ class StripSolver::Search {
 
   private:
     void search(const Deadline& deadline, StripReport& report) {
-        labels_.clear();
         cones_.clear();
-        lanes_.clear();
-        open_ = {};
-        expanded_.assign(states_.size(), -1);
+        expanded_.assign(to_go_.size(), -1);
         add_starts();
         const std::size_t wanted = std::max<std::size_t>(1, options_->lanes);
         std::size_t popped = 0;
@@ -68,8 +60,6 @@ class StripSolver::Search {
             const auto [estimate, negated] = open_.top();
             const std::int32_t label = -negated;
             const double bound = lanes_.empty() ? estimate : lanes_.front().cost;
-            if (lanes_.empty() && incumbent_ <= estimate + options_->limits.absolute_gap && wanted == 1)
-                return finish(bound, report);
             if (!lanes_.empty() && estimate > lanes_.front().cost + options_->worst_of_lanes) break;
             if (popped++ % 64 == 0 && deadline.passed()) return stop(StopReason::time, report, bound);
             if (labels_.size() > options_->max_labels) return stop(StopReason::iterations, report, bound);
@@ -79,10 +69,8 @@ class StripSolver::Search {
                 continue;
             }
             if (was_expanded(label)) continue;
-            if (popped % 256 == 2) dive(label);
             expand(label);
         }
-        if (lanes_.empty() && incumbent_ < StripProblem::kForbidden) return finish(incumbent_, report);
         if (lanes_.empty()) {
             report.status = SolveStatus::infeasible;
             return;
@@ -96,20 +84,17 @@ class StripSolver::Search {
         report.bound = std::min(bound, *report.objective);
     }
     void stop(StopReason reason, StripReport& report, std::optional<double> bound = {}) {
+        if (!lanes_.empty())
+            return finish(*bound, report);  // the best lane is proven, only others are missing
+        if (!open_.empty()) dive(-open_.top().second);
         take_lanes(report);
         report.stopped_by = reason;
         report.bound = bound;
-        if (!lanes_.empty()) {
-            report.status = SolveStatus::optimal;  // the best lane is proven, only others are missing
-            report.stopped_by.reset();
-        } else {
-            report.status = report.objective ? SolveStatus::feasible : SolveStatus::stopped;
-        }
+        report.status = report.objective ? SolveStatus::feasible : SolveStatus::stopped;
         if (report.bound && report.objective) report.bound = std::min(*report.bound, *report.objective);
     }
     void take_lanes(StripReport& report) const {
         for (const FoundLane& found : lanes_) report.lanes.push_back(found.lane);
-        if (lanes_.empty() && incumbent_ < StripProblem::kForbidden) report.lanes.push_back(incumbent_lane_);
         if (report.lanes.empty()) return;
         report.lane_graph = lane_graph_of(report.lanes.front());
         if (const auto strip = cheapest_strip(*problem_, report.lanes.front()))
@@ -129,7 +114,6 @@ class StripSolver::Search {
     void push(Label label, std::int32_t parent, std::initializer_list<std::size_t> entered) {
         const double rest = label.is_end ? label.unused : to_go_.of(label.state);
         const double estimate = label.cost + rest - label.unused;
-        if (!(estimate < incumbent_) && options_->lanes <= 1) return;
         if (!(estimate < StripProblem::kForbidden)) return;
         const auto number = static_cast<std::int32_t>(labels_.size());
         label.parent = parent;
@@ -144,11 +128,11 @@ class StripSolver::Search {
         const std::vector<double>& multipliers = to_go_.multipliers();
         for (std::uint32_t r = 0; r < problem_->rungs.size(); ++r) {
             const StripRung& rung = problem_->rungs[r];
-            if (!rung.may_start || !states_.has(r)) continue;
-            push({.state = states_.first(r),
+            if (!rung.may_start) continue;
+            push({.state = to_go_.first(r),
                   .cost = rung.start_cost,
                   .unused = to_go_.sum() - multipliers[rung.left] - multipliers[rung.right],
-                  .cone = static_cast<std::int32_t>(rung.left)},
+                  .by = -1 - static_cast<std::int32_t>(r)},
                  -1, {rung.left, rung.right});
         }
     }
@@ -156,7 +140,7 @@ class StripSolver::Search {
     /// Whether the same state was expanded before with the same cones, which cost no more then; of several
     /// lanes, with the same lane.
     bool was_expanded(std::int32_t label) {
-        std::int32_t& head = expanded_[states_.index(at(label).state)];
+        std::int32_t& head = expanded_[to_go_.index(at(label).state)];
         for (std::int32_t other = head; other >= 0; other = at(other).next_at) {
             if (std::equal(cones_of(label), cones_of(label) + words_, cones_of(other)) &&
                 (options_->lanes <= 1 || lane_of(label) == lane_of(other)))
@@ -169,48 +153,48 @@ class StripSolver::Search {
 
     void expand(std::int32_t parent) {
         const Label label = at(parent);
-        if (const double cost = states_.end_cost(label.state); cost < StripProblem::kForbidden)
+        if (const double cost = to_go_.end_cost(label.state); cost < StripProblem::kForbidden)
             push({.state = label.state, .cost = label.cost + cost, .unused = label.unused, .is_end = true},
                  parent, {});
-        states_.for_each_step(label.state, [&](const StripStep& step) {
-            if (uses(parent, step.cone)) return;
+        to_go_.for_each_step(label.state, [&](const StripStep& step) {
+            const std::size_t cone = entered(step);
+            if (uses(parent, cone)) return;
             push({.state = step.to,
                   .cost = label.cost + step.cost,
-                  .unused = label.unused - to_go_.multipliers()[step.cone],
-                  .cone = static_cast<std::int32_t>(step.cone)},
-                 parent, {step.cone});
+                  .unused = label.unused - to_go_.multipliers()[cone],
+                  .by = static_cast<std::int32_t>(step.triangle)},
+                 parent, {cone});
         });
     }
+    [[nodiscard]] std::size_t entered(const StripStep& step) const {
+        return problem_->entered(problem_->triangles[step.triangle]);
+    }
 
-    /// Completes a partial strip by the cheapest step each time: an incumbent, unless it gets stuck.
+    /// Completes a partial strip by the cheapest step each time: a lane, unless it gets stuck.
     void dive(std::int32_t label) {
         std::vector<std::uint64_t> used(cones_of(label), cones_of(label) + words_);
         StripState state = at(label).state;
         double cost = at(label).cost;
         StripLane lane = lane_of(label);
         while (true) {
-            const double end = states_.end_cost(state);
             std::optional<StripStep> best;
-            double best_to_go = end;
-            states_.for_each_step(state, [&](const StripStep& step) {
-                if ((used[step.cone / 64] >> (step.cone % 64) & 1U) != 0) return;
-                const double by_step = step.cost + to_go_.multipliers()[step.cone] + to_go_.of(step.to);
-                if (by_step >= best_to_go) return;
-                best_to_go = by_step;
+            double to_go = to_go_.end_cost(state);
+            to_go_.for_each_step(state, [&](const StripStep& step) {
+                const std::size_t cone = entered(step);
+                const double by_step = step.cost + to_go_.multipliers()[cone] + to_go_.of(step.to);
+                if (by_step >= to_go || (used[cone / 64] >> (cone % 64) & 1U) != 0) return;
+                to_go = by_step;
                 best = step;
             });
-            if (!best) {
-                if (cost + end < incumbent_) {
-                    incumbent_ = cost + end;
-                    incumbent_lane_ = lane;
-                }
-                return;
-            }
-            used[best->cone / 64] |= std::uint64_t{1} << (best->cone % 64);
-            (best->is_left ? lane.left : lane.right).push_back(best->cone);
+            if (!best) break;
+            const std::size_t cone = entered(*best);
+            used[cone / 64] |= std::uint64_t{1} << (cone % 64);
+            (problem_->triangles[best->triangle].is_left ? lane.left : lane.right).push_back(cone);
             cost += best->cost;
             state = best->to;
         }
+        cost += to_go_.end_cost(state);
+        if (cost < StripProblem::kForbidden) lanes_.push_back({std::move(lane), cost});
     }
 
     [[nodiscard]] StripLane lane_of(std::int32_t label) const {
@@ -218,14 +202,13 @@ class StripSolver::Search {
         for (; label >= 0; label = at(label).parent) {
             const Label& last = at(label);
             if (last.is_end) continue;
-            const StripRung& rung = problem_->rungs[last.state.rung];
             if (last.parent < 0) {
+                const StripRung& rung = problem_->rungs[static_cast<std::size_t>(-1 - last.by)];
                 lane.left.push_back(rung.left);
                 lane.right.push_back(rung.right);
-            } else if (static_cast<std::size_t>(last.cone) == rung.left) {
-                lane.left.push_back(rung.left);
             } else {
-                lane.right.push_back(rung.right);
+                const StripTriangle& t = problem_->triangles[static_cast<std::size_t>(last.by)];
+                (t.is_left ? lane.left : lane.right).push_back(problem_->entered(t));
             }
         }
         std::ranges::reverse(lane.left);
@@ -250,7 +233,6 @@ class StripSolver::Search {
 
     const StripProblem* problem_ = nullptr;
     const StripOptions* options_ = nullptr;
-    StripStates states_;
     CostsToGo to_go_;
     std::vector<Label> labels_;
     std::vector<std::uint64_t> cones_;  ///< the cones that a label uses, a bit each, words_ a label
@@ -260,8 +242,6 @@ class StripSolver::Search {
     std::priority_queue<Open, std::vector<Open>, std::greater<>> open_;
     std::vector<std::int32_t> expanded_;  ///< by state the label that was expanded last
     std::vector<FoundLane> lanes_;
-    double incumbent_ = StripProblem::kForbidden;
-    StripLane incumbent_lane_;
 };
 
 StripSolver::StripSolver() : search_(std::make_unique<Search>()) {}
