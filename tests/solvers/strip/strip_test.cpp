@@ -11,6 +11,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <set>
+
+#include <fmt/format.h>
 
 namespace conelane::tests {
 namespace {
@@ -41,15 +44,13 @@ class EveryStrip {
             known->second = std::min(known->second, whole);
         }
         for (const StripTriangle& triangle : problem_.leaving(rung)) {
-            const StripRung& to = problem_.rungs[triangle.to];
-            const std::size_t cone = triangle.is_left ? to.left : to.right;
+            const std::size_t cone = problem_.entered(triangle);
             if (std::ranges::count(lane.left, cone) + std::ranges::count(lane.right, cone) > 0) continue;
             StripLane longer = lane;
             auto& side = triangle.is_left ? longer.left : longer.right;
-            double turn = 0.0;
-            if (side.size() > 1)
-                turn = problem_.turn_cost(side.back(), triangle.is_left,
-                                          place(side[side.size() - 2], side.back()), triangle.out);
+            const std::size_t in =
+                side.size() > 1 ? place(side[side.size() - 2], side.back()) : problem_.degree(side.back());
+            const double turn = problem_.step_cost(side.back(), triangle.is_left, in, triangle.out);
             if (!(turn < StripProblem::kForbidden)) continue;
             side.push_back(cone);
             go_on(triangle.to, longer, cost + triangle.cost + turn);
@@ -181,8 +182,7 @@ TEST(StripSolver, ClaimsNothingThatALimitPrevents) {
         }
         if (part.status == SolveStatus::optimal) {
             EXPECT_NEAR(*part.objective, *whole.objective, 1e-9);
-        }
-        if (part.status != SolveStatus::optimal) {
+        } else {
             EXPECT_EQ(part.stopped_by, StopReason::iterations);
         }
     }
@@ -209,31 +209,22 @@ TEST(StripModel, NamesColumnsAndForbidsCirculations) {
     for (const char* family : {"s", "t", "y_L", "y_R", "f_L", "f_R", "b_L", "b_R", "e_L", "e_R"})
         EXPECT_GT(families[family], 0) << family;
     // Each triangle chosen that no strip from the start reaches is forbidden.
-    StripSolver solver;
-    const StripReport report = solver.solve(problem, {});
+    const StripReport report = StripSolver().solve(problem, {});
     ASSERT_TRUE(report.objective) << report.message;
-    const StripOfLane strip = *cheapest_strip(problem, report.lanes.front());
-    std::vector<double> point(program.columns.size(), 0.0);
-    for (std::size_t c = 0; c < point.size(); ++c) {
-        const auto chosen = [&](std::size_t k) {
-            const StripTriangle& t = problem.triangles[k];
-            const StripRung& from = problem.rungs[t.from];
-            const StripRung& to = problem.rungs[t.to];
-            const std::string name = t.is_left
-                                         ? "y_L_" + std::to_string(from.left) + "_" +
-                                               std::to_string(to.left) + "_" + std::to_string(from.right)
-                                         : "y_R_" + std::to_string(from.left) + "_" +
-                                               std::to_string(from.right) + "_" + std::to_string(to.right);
-            return to_string(program.columns[c].label) == name;
-        };
-        if (std::ranges::any_of(strip.triangles, chosen)) point[c] = 1.0;
-        const StripLane& lane = report.lanes.front();
-        if (to_string(program.columns[c].label) ==
-            "s_" + std::to_string(lane.left.front()) + "_" + std::to_string(lane.right.front()))
-            point[c] = 1.0;
+    const StripLane& lane = report.lanes.front();
+    std::set<std::string> chosen{fmt::format("s_{}_{}", lane.left.front(), lane.right.front())};
+    const StripOfLane strip = *cheapest_strip(problem, lane);
+    for (const std::size_t k : strip.triangles) {
+        const StripTriangle& t = problem.triangles[k];
+        const auto& [l, r, may_start, may_end, cost] = problem.rungs[t.from];
+        chosen.insert(t.is_left ? fmt::format("y_L_{}_{}_{}", l, problem.entered(t), r)
+                                : fmt::format("y_R_{}_{}_{}", l, r, problem.entered(t)));
     }
+    std::vector<double> point;
+    for (const auto& column : program.columns)
+        point.push_back(chosen.contains(to_string(column.label)) ? 1.0 : 0.0);
     EXPECT_TRUE(model.separate(point).empty());
-    EXPECT_EQ(model.decode(point), report.lanes.front());
+    EXPECT_EQ(model.decode(point), lane);
     for (std::size_t c = 0; c < point.size(); ++c)
         if (program.columns[c].label.family == "s") point[c] = point[c] > 0.5 ? 0.0 : 1.0;
     EXPECT_FALSE(model.separate(point).empty());
