@@ -253,6 +253,7 @@ void add_gaps(std::span<const ProblemEdge> gaps, EdgeExtent extent, LaneGraphPro
 void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     const std::vector<ProblemEdge>& edges = problem.edges;
     const double too_close_m = problem.parameters.d_min - kTieTolerance;
+    if (too_close_m <= 0.0 && !problem.parameters.forbid_crossing) return;
     std::vector<MeasuredSegment> segments;
     segments.reserve(edges.size());
     for (const ProblemEdge& edge : edges) {
@@ -444,8 +445,9 @@ Scene seen_from_car(const Scene& scene) {
 }
 
 LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
-                                  Limits& limits) {
-    if (is_far_from_origin(scene)) return problem_of_valid(seen_from_car(scene), parameters, extent, limits);
+                                  Limits& limits, bool edges_alone) {
+    if (is_far_from_origin(scene))
+        return problem_of_valid(seen_from_car(scene), parameters, extent, limits, edges_alone);
     LaneGraphProblem problem;
     const std::size_t n = scene.cones.size();
     // The table of distances is allocated in one step, so its size is checked first.
@@ -471,6 +473,7 @@ LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& param
     add_gaps(gaps, extent, problem);
     if (limits.stop(problem)) return problem;
     find_incident(problem);
+    if (edges_alone) return problem;
     add_shape_costs(scene, problem, limits);
     problem.learned_end_cost.assign(n, 0.0);
     std::optional<LearnedFeatures> features;
@@ -484,13 +487,22 @@ LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& param
     return problem;
 }
 
+LimitedProblem limited_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
+                               const Deadline& deadline, bool edges_alone) {
+    validate(parameters);
+    Limits limits(deadline);
+    LaneGraphProblem problem = problem_of_valid(scene, parameters, extent, limits, edges_alone);
+    if (limits.stopped_by()) return {std::nullopt, limits.stopped_by()};
+    return {std::move(problem), std::nullopt};
+}
+
 }  // namespace
 
 LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent) {
     validate(scene);
     validate(parameters);
     Limits none;
-    return problem_of_valid(scene, parameters, extent, none);
+    return problem_of_valid(scene, parameters, extent, none, false);
 }
 
 LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
@@ -501,11 +513,12 @@ LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters,
 
 LimitedProblem make_problem_of_valid_scene(const Scene& scene, const RldParameters& parameters,
                                            EdgeExtent extent, const Deadline& deadline) {
-    validate(parameters);
-    Limits limits(deadline);
-    LaneGraphProblem problem = problem_of_valid(scene, parameters, extent, limits);
-    if (limits.stopped_by()) return {std::nullopt, limits.stopped_by()};
-    return {std::move(problem), std::nullopt};
+    return limited_problem(scene, parameters, extent, deadline, false);
+}
+
+LimitedProblem make_edges_of_valid_scene(const Scene& scene, const RldParameters& parameters,
+                                         const Deadline& deadline) {
+    return limited_problem(scene, parameters, EdgeExtent::candidates, deadline, true);
 }
 
 bool is_too_large(const LaneGraphProblem& problem) {

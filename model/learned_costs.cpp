@@ -77,8 +77,9 @@ double LearnedNetwork::operator()(std::span<const double> features) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < features.size(); ++i) sum += linear[i] * features[i];
     if (output.empty()) return sum;
-    std::array<double, kMaxUnits> unit{};
+    std::array<double, kMaxUnits> unit;  // the first `count` only
     const std::size_t count = output.size();
+    std::fill_n(unit.begin(), count, 0.0);
     for (std::size_t i = 0; i < features.size(); ++i) {
         const double* const row = hidden.data() + i * count;
         const double feature = features[i];
@@ -88,35 +89,26 @@ double LearnedNetwork::operator()(std::span<const double> features) const {
     return sum;
 }
 
-LearnedCosts LearnedCosts::zero(std::size_t units) {
-    LearnedCosts costs;
-    for (const LearnedPart part : kLearnedParts) {
-        const std::size_t features = learned_features(part).size();
-        costs.of(part) = {std::vector<double>(features, 0.0), std::vector<double>(features * units, 0.0),
-                          std::vector<double>(units, 0.0)};
-    }
-    return costs;
+LearnedNetwork LearnedNetwork::zero(std::size_t features, std::size_t units) {
+    return {std::vector<double>(features, 0.0), std::vector<double>(features * units, 0.0),
+            std::vector<double>(units, 0.0)};
 }
 
-void validate(const LearnedCosts& costs) {
-    for (const LearnedPart part : kLearnedParts) {
-        const LearnedNetwork& network = costs.of(part);
-        const std::size_t features = learned_features(part).size();
-        const auto require = [&](const std::vector<double>& numbers, std::size_t size, const char* list) {
-            const std::string key = std::string(to_string(part)) + "." + list;
-            if (numbers.size() != size)
-                throw InvalidInput(key, "must have " + std::to_string(size) + " numbers, not " +
-                                            std::to_string(numbers.size()));
-            if (!std::ranges::all_of(numbers, [](double w) { return std::abs(w) <= kMaxWeight; }))
-                throw InvalidInput(key, "must hold numbers between -1e6 and 1e6");
-        };
-        require(network.linear, features, "linear");
-        if (network.units() > kMaxUnits)
-            throw InvalidInput(std::string(to_string(part)) + ".output",
-                               "must have at most " + std::to_string(kMaxUnits) + " numbers");
-        require(network.output, network.units(), "output");
-        require(network.hidden, features * network.units(), "hidden");
-    }
+void validate(const LearnedNetwork& network, std::string_view name, std::size_t features) {
+    const auto require = [&](const std::vector<double>& numbers, std::size_t size, const char* list) {
+        const std::string key = std::string(name) + "." + list;
+        if (numbers.size() != size)
+            throw InvalidInput(
+                key, "must have " + std::to_string(size) + " numbers, not " + std::to_string(numbers.size()));
+        if (!std::ranges::all_of(numbers, [](double w) { return std::abs(w) <= kMaxWeight; }))
+            throw InvalidInput(key, "must hold numbers between -1e6 and 1e6");
+    };
+    require(network.linear, features, "linear");
+    if (network.units() > kMaxUnits)
+        throw InvalidInput(std::string(name) + ".output",
+                           "must have at most " + std::to_string(kMaxUnits) + " numbers");
+    require(network.output, network.units(), "output");
+    require(network.hidden, features * network.units(), "hidden");
 }
 
 }  // namespace conelane

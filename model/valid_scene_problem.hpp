@@ -9,5 +9,8 @@ namespace conelane {
 /// finite.
 [[nodiscard]] LimitedProblem make_problem_of_valid_scene(const Scene& scene, const RldParameters& parameters,
                                                          EdgeExtent extent, const Deadline& deadline);
+/// Without turns, conflicts, and the costs of shape and of learned costs.
+[[nodiscard]] LimitedProblem make_edges_of_valid_scene(const Scene& scene, const RldParameters& parameters,
+                                                       const Deadline& deadline);
 
 }  // namespace conelane

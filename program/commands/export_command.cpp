@@ -5,6 +5,7 @@
 #include "evaluation/proofs/answer_check.hpp"
 #include "model/connecting_flow.hpp"
 #include "model/lane_graph_model.hpp"
+#include "model/strip_model.hpp"
 #include "program/commands/command_parts.hpp"
 
 // Export and import are about the program of one scene. Rows that a solve adds on demand, (5) and the
@@ -26,8 +27,9 @@ struct ProgramSource {
 void add_program_options(CLI::App& command, ProgramSource& source) {
     command.add_option("--scenes", source.scenes, "*.scenes.jsonl")->required();
     command.add_option("--id", source.id, "id of the scene")->required();
-    add_word_option(command, "--formulation", source.formulation, {"tight", "paper"},
-                    "rows and columns of the program: tight, or paper as printed");
+    add_word_option(command, "--formulation", source.formulation, {"tight", "paper", "strip"},
+                    "rows and columns of the program: tight, paper as printed, or strip, with hand-set "
+                    "costs or with the limits and costs of --params");
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
     add_parameter_options(command, source.parameters, "the defaults");
     command.add_flag(
@@ -36,11 +38,15 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
         "is that of the scene (the default); --rows-on-demand leaves them out");
 }
 
+Scene scene_of(const ProgramSource& source) {
+    return cones_asked_for(scene_named(source.id, source.scenes).scene, source.nearest);
+}
+
 /// The program of a scene, with everything that it refers to.
 class SceneProgram {
   public:
     explicit SceneProgram(const ProgramSource& source)
-        : scene(cones_asked_for(scene_named(source.id, source.scenes).scene, source.nearest)),
+        : scene(scene_of(source)),
           formulation(source.formulation == "paper" ? Formulation::paper : Formulation::tight),
           parameters(source.parameters.load()),
           problem(make_problem(scene, parameters, parts(formulation).extent)),
@@ -72,18 +78,31 @@ struct ExportOptions {
     double time_limit_ms = 10'000.0;  ///< of the proof
 };
 
-void export_program(const ExportOptions& options) {
+void write_program(const ExportOptions& options, const BinaryProgram& program) {
     const std::string ending = std::filesystem::path(options.out).extension().string();
     if (ending != ".mps" && ending != ".lp")
         throw InvalidInput("--out", "'" + options.out + "' does not end in .mps or .lp");
-    const SceneProgram scene_program(options.source);
-    const BinaryProgram& program = scene_program.program;
     AtomicFile file(options.out);
     // A name must be one word in these formats.
     (ending == ".mps" ? write_mps : write_lp)(file.stream(), program,
                                               "conelane_" + options.source.formulation);
     file.commit();
     fmt::print("{} columns and {} rows in {}\n", program.columns.size(), program.rows.size(), options.out);
+}
+
+void export_strip(const ExportOptions& options) {
+    const StripParameters parameters = options.source.parameters.name.empty()
+                                           ? driving_strip_parameters()
+                                           : strip_parameters_of(options.source.parameters.load());
+    const StripProblem problem = make_strip_problem(scene_of(options.source), parameters);
+    StripModel model(problem);
+    if (model.build(Deadline())) throw InvalidInput("--id", "the program of the scene is too large");
+    write_program(options, model.program());
+}
+
+void export_program(const ExportOptions& options) {
+    if (options.source.formulation == "strip") return export_strip(options);
+    write_program(options, SceneProgram(options.source).program);
 }
 
 SolutionFile read_solution(const std::string& path, const BinaryProgram& program) {
@@ -163,6 +182,8 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
 }
 
 void import_solution(const ExportOptions& options) {
+    if (options.source.formulation == "strip")
+        throw InvalidInput("--formulation", "solutions of strips are not read; tight and paper are");
     const SceneProgram program(options.source);
     const SolutionFile solution = read_solution(options.solution, program.program);
     const SolutionRecord record = to_record(solution, program, options);

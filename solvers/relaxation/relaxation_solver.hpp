@@ -7,9 +7,14 @@
 
 namespace conelane {
 
-/// Optimum of the program without integrality, by Clp; nothing if it is infeasible. Precondition: the program
-/// has a column.
-[[nodiscard]] std::optional<double> linear_relaxation_optimum(const BinaryProgram& program);
+struct LinearRelaxation {
+    double optimum;
+    bool is_integral;  ///< no integer column has a fractional value
+};
+
+/// The optimum of the program without integrality, by Clp; nothing if it is infeasible. Precondition: the
+/// program has a column.
+[[nodiscard]] std::optional<LinearRelaxation> linear_relaxation(const BinaryProgram& program);
 
 /// The lane-graph problem with edges between 0 and 1 and the products a_ij a_jk instead of f_ijk: a
 /// quadratic, in general nonconvex objective under linear rows. Its minimum is not a bound, since (5) is left

@@ -11,7 +11,7 @@ namespace {
 
 double relaxed(const Scene& scene, const RldParameters& parameters, Formulation formulation) {
     const LaneGraphProblem problem = make_problem(scene, parameters, parts(formulation).extent);
-    return linear_relaxation_optimum(LaneGraphModel(problem, formulation).program()).value();
+    return linear_relaxation(LaneGraphModel(problem, formulation).program()).value().optimum;
 }
 
 std::optional<double> optimum(const Scene& scene, const RldParameters& parameters) {

@@ -12,6 +12,9 @@ namespace conelane {
 enum class LearnedPart { edge, turn, near_end, far_end };
 inline constexpr std::array kLearnedParts{LearnedPart::edge, LearnedPart::turn, LearnedPart::near_end,
                                           LearnedPart::far_end};
+[[nodiscard]] constexpr auto parts_of(LearnedPart /*any*/) {
+    return kLearnedParts;
+}
 /// As files spell it: `edge`, `turn`, `near_end`, `far_end`.
 [[nodiscard]] std::string_view to_string(LearnedPart part);
 
@@ -31,11 +34,41 @@ struct LearnedNetwork {
     std::vector<double> hidden;  ///< one a feature and unit, feature after feature
     std::vector<double> output;  ///< one a unit
 
+    [[nodiscard]] static LearnedNetwork zero(std::size_t features, std::size_t units);
     [[nodiscard]] std::size_t units() const { return output.size(); }
     /// Precondition: as many features as `linear`.
     [[nodiscard]] double operator()(std::span<const double> features) const;
     bool operator==(const LearnedNetwork&) const = default;
 };
+
+/// Throws InvalidInput naming network and list, such as `edge.hidden`, if a size is wrong or a number is not
+/// finite or beyond 1e6.
+void validate(const LearnedNetwork& network, std::string_view name, std::size_t features);
+
+/// A network for each part of a program. Part: an enumeration with parts_of, to_string and learned_features.
+template <typename Part>
+struct PartNetworks {
+    static constexpr auto kParts = parts_of(Part{});
+    std::array<LearnedNetwork, kParts.size()> networks;
+
+    [[nodiscard]] const LearnedNetwork& of(Part part) const {
+        return networks[static_cast<std::size_t>(part)];
+    }
+    [[nodiscard]] LearnedNetwork& of(Part part) { return networks[static_cast<std::size_t>(part)]; }
+    /// All 0, with so many hidden units in each network.
+    [[nodiscard]] static PartNetworks zero(std::size_t units = 0) {
+        PartNetworks costs;
+        for (const Part part : kParts)
+            costs.of(part) = LearnedNetwork::zero(learned_features(part).size(), units);
+        return costs;
+    }
+    bool operator==(const PartNetworks&) const = default;
+};
+template <typename Part>
+void validate(const PartNetworks<Part>& costs) {
+    for (const Part part : costs.kParts)
+        validate(costs.of(part), to_string(part), learned_features(part).size());
+}
 
 /// Learned costs of the lane graph problem, by part. They are added to the costs of (29):
 /// - of an edge, the network itself,
@@ -43,20 +76,9 @@ struct LearnedNetwork {
 /// - of a near or far end, the network where it is negative, else 0, so that every end gains.
 /// This restricts nothing: every lane graph has two near and two far ends, and two turns less for each path
 /// than edges, so a constant moved from turns to edges, or added to all ends, changes no optimum.
-struct LearnedCosts {
-    std::array<LearnedNetwork, kLearnedParts.size()> networks;
-
-    [[nodiscard]] const LearnedNetwork& of(LearnedPart part) const {
-        return networks[static_cast<std::size_t>(part)];
-    }
-    [[nodiscard]] LearnedNetwork& of(LearnedPart part) { return networks[static_cast<std::size_t>(part)]; }
-    /// All 0, with so many hidden units in each network.
-    [[nodiscard]] static LearnedCosts zero(std::size_t units = 0);
+struct LearnedCosts : PartNetworks<LearnedPart> {
+    [[nodiscard]] static LearnedCosts zero(std::size_t units = 0) { return {PartNetworks::zero(units)}; }
     bool operator==(const LearnedCosts&) const = default;
 };
-
-/// Throws InvalidInput naming network and list, such as `edge.hidden`, where a size is wrong or a number is
-/// not finite or beyond 1e6.
-void validate(const LearnedCosts& costs);
 
 }  // namespace conelane
