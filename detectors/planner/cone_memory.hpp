@@ -44,8 +44,14 @@ class ConeMemory {
         std::array<int, 5> colors{};  ///< sightings in each color
     };
     [[nodiscard]] const std::vector<RememberedCone>& cones() const { return cones_; }
+    /// Null if it is forgotten.
+    [[nodiscard]] const RememberedCone* find(ConeId own) const;
+    /// In one of the last frames.
+    [[nodiscard]] bool is_seen_lately(const RememberedCone& cone, int frames) const {
+        return frame_ - cone.last_seen < frames;
+    }
     [[nodiscard]] bool is_seen_lately(const RememberedCone& cone) const {
-        return frame_ - cone.last_seen < settings_.lately_frames;
+        return is_seen_lately(cone, settings_.lately_frames);
     }
 
     /// Whether the last frame would have shown a cone at this place. Range and bearings of the sensor are not

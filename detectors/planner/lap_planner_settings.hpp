@@ -19,6 +19,8 @@ struct ConeMemorySettings {
     double blind_m = 2.0;      ///< within this distance of the car no cone is expected to be seen
     int fleeting_frames = 10;  ///< a cone seen once is forgotten after this many frames
     double max_range_m = 30.0;  ///< range of the scene for the detector
+    double narrow_rad = 1.05;   ///< a view whose widest bearing is smaller is narrow
+    double near_m = 10.0;       ///< shortest range of the scene of a narrow view
     int lately_frames = 5;      ///< a cone is seen lately that one of so many frames showed
     double behind_m = 5.0;      ///< cones up to this distance behind the car are in the scene
     std::size_t max_cones =
@@ -44,6 +46,9 @@ struct LaneChoiceSettings {
     double min_kept_weight = 0.02;  ///< a less probable candidate does not count
     double known_ahead_m = 50.0;    ///< length of the lap before that is driven by
     double min_left_m = 3.0;        ///< a lane with a shorter rest does not resist a new one
+    double narrowest_m = 2.5;       ///< width of a lane that is inferred from one boundary
+    double alone_m = 10.0;          ///< trusted length of such a lane
+    double passing_m = 5.0;         ///< length ahead of the car in which its cones become known
     double max_offset_m = 2.5;      ///< distance from car to path: farther away, the car is off it
 };
 
