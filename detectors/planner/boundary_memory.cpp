@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
-#include <span>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -25,44 +26,40 @@ constexpr std::size_t kMaxContinued = 12;
 constexpr int kMinAhead = 2;
 constexpr int kLately_frames = 2;  ///< a cone in view may be missed once
 
-/// Puts the cones of a newer lane into those known before. What was known beyond both ends stays, if the two
-/// meet there.
-void merge(std::vector<ConeId>& known, const std::vector<ConeId>& seen) {
-    if (seen.empty()) return;
-    const auto is_seen = [&](ConeId id) { return std::ranges::find(seen, id) != seen.end(); };
-    const auto first = std::ranges::find_if(known, is_seen);
-    std::vector<ConeId> merged(known.begin(), first);
-    merged.insert(merged.end(), seen.begin(), seen.end());
-    const auto last = std::ranges::find(known, seen.back());
-    if (last != known.end()) {
-        std::copy_if(last + 1, known.end(), std::back_inserter(merged),
-                     [&](ConeId id) { return !is_seen(id); });
-    }
-    known = std::move(merged);
-}
-
 bool has(const std::vector<ConeId>& ids, ConeId id) {
     return std::ranges::find(ids, id) != ids.end();
+}
+
+/// Puts the cones of a newer lane into those known before. What was known beyond both ends stays, if the two
+/// meet there.
+void merge(std::vector<ConeId>& known, std::vector<ConeId> seen) {
+    if (seen.empty()) return;
+    const auto first = std::ranges::find_if(known, [&](ConeId id) { return has(seen, id); });
+    const auto last = std::ranges::find(known, seen.back());
+    const std::vector<ConeId> beyond(last == known.end() ? last : last + 1, known.end());
+    known.erase(first, known.end());
+    std::ranges::copy_if(beyond, std::back_inserter(seen), [&](ConeId id) { return !has(seen, id); });
+    known.insert(known.end(), seen.begin(), seen.end());
 }
 
 /// The cone of the scene that continues a boundary: near and straight on; null if there is none.
 const Cone* continuation(const Scene& scene, const Point& before, const Point& last,
                          const std::vector<ConeId>& own, const std::vector<ConeId>& other) {
     const Cone* best = nullptr;
-    const double longest_m = std::min(kLongest_m, kLargestRatio * (last - before).norm());
+    const double before_m = (last - before).norm();
     double least_m = std::numeric_limits<double>::infinity();
     for (const Cone& cone : scene.cones) {
         const Point step = cone.position - last;
         const double length_m = step.norm();
-        if (length_m < kShortest_m || length_m > longest_m) continue;
         const double turn_rad = std::abs(turning_angle(last - before, step));
         // A longer step than the last one steps over a missed cone, or to another boundary.
-        const bool is_longer = length_m > kUsualRatio * (last - before).norm();
-        if (turn_rad > (is_longer ? kLargestTurnOver_rad : kLargestTurn_rad) || has(own, cone.id) ||
-            has(other, cone.id))
-            continue;
-        if (length_m * (1.0 + turn_rad) >= least_m) continue;
-        least_m = length_m * (1.0 + turn_rad);
+        const double most_rad = length_m > kUsualRatio * before_m ? kLargestTurnOver_rad : kLargestTurn_rad;
+        const bool is_near =
+            length_m >= kShortest_m && length_m <= std::min(kLongest_m, kLargestRatio * before_m);
+        const double cost_m = length_m * (1.0 + turn_rad);
+        if (!is_near || turn_rad > most_rad || cost_m >= least_m) continue;
+        if (has(own, cone.id) || has(other, cone.id)) continue;
+        least_m = cost_m;
         best = &cone;
     }
     return best;
@@ -70,17 +67,17 @@ const Cone* continuation(const Scene& scene, const Point& before, const Point& l
 
 }  // namespace
 
-void BoundaryMemory::learn(const Lane& lane, const DrivableLane& path, const ConeMemory& cones) {
-    const double trusted_m = path.trusted_m.value_or(0.0);
+void BoundaryMemory::learn(const Lane& lane, const DrivableLane& path, double until_m,
+                           const ConeMemory& cones) {
     for (const std::size_t side : {0U, 1U}) {
-        std::vector<ConeId> trusted;
+        std::vector<ConeId> learned;
         for (const ConeId id : side == 0 ? lane.left : lane.right) {
             const ConeMemory::RememberedCone* const cone = cones.find(id);
-            if (cone != nullptr && arc_length_beside(path, cone->position, kBeside_m) <= trusted_m)
-                trusted.push_back(id);
+            if (cone != nullptr && arc_length_beside(path, cone->position, kBeside_m) <= until_m)
+                learned.push_back(id);
         }
-        std::erase_if(known_[1 - side], [&](ConeId id) { return has(trusted, id); });
-        merge(known_[side], trusted);
+        std::erase_if(known_[1 - side], [&](ConeId id) { return has(learned, id); });
+        merge(known_[side], std::move(learned));
     }
 }
 
@@ -96,20 +93,15 @@ void BoundaryMemory::pass(const Pose& pose, const ConeMemory& cones) {
 }
 
 std::optional<Lane> BoundaryMemory::alone(const Scene& scene, const ConeMemory& cones) const {
-    const auto in_view = [&](const std::vector<ConeId>& side) {
-        return static_cast<std::size_t>(std::ranges::count_if(side, [&](ConeId id) {
-            const ConeMemory::RememberedCone* const cone = cones.find(id);
-            return cone != nullptr && cones.is_seen_lately(*cone, kLately_frames);
-        }));
-    };
+    const auto is_in_view = [&](ConeId id) { return cones.is_seen_lately(*cones.find(id), kLately_frames); };
     const auto place_of = [&](ConeId id) { return cones.find(id)->position; };
     for (const std::size_t side : {0U, 1U}) {
         const std::vector<ConeId>& other = known_[1 - side];
         std::vector<ConeId> own;
-        for (const ConeId id : known_[side]) {
-            if (std::ranges::find(scene.cones, id, &Cone::id) != scene.cones.end()) own.push_back(id);
-        }
-        if (own.size() < 2 || in_view(other) > 0) continue;
+        std::ranges::copy_if(known_[side], std::back_inserter(own), [&](ConeId id) {
+            return std::ranges::find(scene.cones, id, &Cone::id) != scene.cones.end();
+        });
+        if (own.size() < 2 || std::ranges::any_of(other, is_in_view)) continue;
         for (std::size_t i = 0; i < kMaxContinued; ++i) {
             const Cone* const next =
                 continuation(scene, place_of(own.end()[-2]), place_of(own.back()), own, other);

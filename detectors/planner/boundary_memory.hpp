@@ -18,15 +18,15 @@ namespace conelane {
 /// which side the car has that boundary, and follows it on from cone to cone.
 class BoundaryMemory {
   public:
-    /// Adds the cones of a lane as far as `path`, its centre line, is trusted: they have their side until a
-    /// later trusted lane has them on the other one.
-    void learn(const Lane& lane, const DrivableLane& path, const ConeMemory& cones);
+    /// Adds the cones of a lane up to an arc length of `path`, its centre line: they have their side until a
+    /// later lane has them on the other one.
+    void learn(const Lane& lane, const DrivableLane& path, double until_m, const ConeMemory& cones);
     /// Forgets the cones that the car has left behind.
     void pass(const Pose& pose, const ConeMemory& cones);
 
     /// The boundary that is in view alone: at least two of its cones ahead are known or continue it smoothly,
-    /// and the view shows no known cone of the other side. The lane has cones of the scene only. Nothing if
-    /// both boundaries are in view, or none.
+    /// and the view shows no known cone of the other side. Nothing if both boundaries are in view, or none.
+    /// Precondition: `pass` was called for these cones.
     [[nodiscard]] std::optional<Lane> alone(const Scene& scene, const ConeMemory& cones) const;
 
   private:

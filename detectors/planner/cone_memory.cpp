@@ -184,7 +184,8 @@ void ConeMemory::forget() {
 Scene ConeMemory::scene(const Pose& pose) const {
     Scene scene{"frame", pose, {}};
     // A narrow view shows little in a corner: the cones remembered near the car lead on.
-    const double least_m = widest_rad_ < settings_.narrow_rad ? settings_.near_m : 0.0;
+    const bool is_narrow = range_m_ > 0.0 && widest_rad_ < settings_.narrow_rad;
+    const double least_m = is_narrow ? settings_.near_m : 0.0;
     const double range_m = std::clamp(range_m_, least_m, settings_.max_range_m);
     std::vector<const RememberedCone*> chosen;
     for (const RememberedCone& cone : cones_) {

@@ -50,9 +50,6 @@ class ConeMemory {
     [[nodiscard]] bool is_seen_lately(const RememberedCone& cone, int frames) const {
         return frame_ - cone.last_seen < frames;
     }
-    [[nodiscard]] bool is_seen_lately(const RememberedCone& cone) const {
-        return is_seen_lately(cone, settings_.lately_frames);
-    }
 
     /// Whether the last frame would have shown a cone at this place. Range and bearings of the sensor are not
     /// known. Assumption: it sees about as far and as wide as in that frame.

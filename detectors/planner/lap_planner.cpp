@@ -243,29 +243,22 @@ LapPlanner::Choice LapPlanner::seen_lane(const LaneAnswer& answer, const Scene& 
                                          const DrivableLane& left) {
     run_.boundaries.pass(scene.pose, run_.cones);
     const bool is_two_sided = !answer.lane.left.empty() && !answer.lane.right.empty();
-    const bool is_trusted = is_two_sided && answer.trusted_m.value_or(0.0) > 0.0;
-    std::optional<Lane> lane;
-    if (!is_trusted) lane = run_.boundaries.alone(scene, run_.cones);
-    if (lane && (!is_two_sided || mistakes_side(answer.lane, *lane))) {
-        LaneAnswer alone;
-        alone.status = LaneStatus::found;
-        alone.lane = *lane;
-        alone.trusted_m = kChoice.alone_m;
-        Choice choice = chosen_lane(alone, scene, left);
-        if (choice.is_answer) {
-            DrivableLane near = *choice.fresh;
-            near.trusted_m = std::min(near.length_m, kChoice.passing_m);
-            run_.boundaries.learn(*lane, near, run_.cones);
-        }
+    const double trusted_m = is_two_sided ? answer.trusted_m.value_or(0.0) : 0.0;
+    std::optional<Lane> alone;
+    if (trusted_m <= 0.0) alone = run_.boundaries.alone(scene, run_.cones);
+    if (alone && (!is_two_sided || mistakes_side(answer.lane, *alone))) {
+        LaneAnswer outer;
+        outer.status = LaneStatus::found;
+        outer.lane = *alone;
+        outer.trusted_m = kChoice.alone_m;
+        Choice choice = chosen_lane(outer, scene, left);
+        if (choice.is_answer) run_.boundaries.learn(outer.lane, *choice.fresh, kChoice.passing_m, run_.cones);
         if (choice.seen) return choice;
     }
     Choice choice = chosen_lane(answer, scene, left);
-    if (is_two_sided && choice.is_answer) {
-        DrivableLane near = *choice.fresh;
-        if (answer.confidence.value_or(0.0) > 0.5)
-            near.trusted_m = std::max(near.trusted_m.value_or(0.0), kChoice.passing_m);
-        run_.boundaries.learn(answer.lane, near, run_.cones);
-    }
+    const double sure_m = answer.confidence.value_or(0.0) > 0.5 ? kChoice.passing_m : 0.0;
+    if (is_two_sided && choice.is_answer)
+        run_.boundaries.learn(answer.lane, *choice.fresh, std::max(trusted_m, sure_m), run_.cones);
     return choice;
 }
 

@@ -21,7 +21,6 @@ struct ConeMemorySettings {
     double max_range_m = 30.0;  ///< range of the scene for the detector
     double narrow_rad = 1.05;   ///< a view whose widest bearing is smaller is narrow
     double near_m = 10.0;       ///< shortest range of the scene of a narrow view
-    int lately_frames = 5;      ///< a cone is seen lately that one of so many frames showed
     double behind_m = 5.0;      ///< cones up to this distance behind the car are in the scene
     std::size_t max_cones =
         3000;  ///< largest number of remembered cones; those seen longest ago are forgotten first
@@ -78,6 +77,7 @@ struct CourseSettings {
     int fitting_frames = 3;  ///< frames until the course is trusted, or not trusted any more
     int missed_frames = 6;   ///< a boundary cone that so many frames in a row should show is gone
     int min_sightings = 3;   ///< of a cone that is noted, or new
+    int lately_frames = 5;   ///< a new cone counts that one of so many frames showed
     double in_lane_m = 0.6;  ///< a cone so far inside the boundaries is in the way
     double before_m = 1.0;   ///< the trust ends so far before what contradicts the course
 };

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <deque>
+#include <utility>
 
 namespace conelane::experiments {
 
@@ -16,16 +17,13 @@ struct DynamicCarParameters {
     double to_front_m = 0.775;  ///< from the centre of gravity to the front axle
     double to_rear_m = 0.775;
     /// Magic Formula of an axle: force / load = d sin(c atan(b (1 - e) slip + e atan(b slip))), slip in rad.
-    double tyre_b = 12.56;
+    std::array<double, 2> tyre_b{12.56, 12.56};  ///< front and rear
     double tyre_c = 1.38;
     double tyre_d = 1.60;
     double tyre_e = -0.58;
     SteeringLimits steering = {};
     double delay_s = 0.05;         ///< from a command to steering, motor and brake
     double largest_step_s = 1e-3;  ///< of the integration
-
-    /// Cornering stiffness / load, of both axles [1/rad].
-    [[nodiscard]] double stiffness_1prad() const { return tyre_b * tyre_c * tyre_d; }
 };
 
 /// A single-track car with slip: constant axle loads, a force across each axle that saturates, and a friction
@@ -42,25 +40,18 @@ class DynamicCar {
 
     [[nodiscard]] Pose rear_axle() const;
     [[nodiscard]] double speed_mps() const { return state_[kAhead]; }  ///< along the car
-    [[nodiscard]] double yaw_rate_radps() const { return state_[kTurn]; }
-    [[nodiscard]] double to_left_mps() const { return state_[kLeft]; }  ///< of the centre of gravity
-    [[nodiscard]] double steering_rad() const { return steering_rad_; }
 
   private:
     /// Place [m] and heading [rad] of the centre of gravity; speeds ahead and to the left [m/s]; yaw rate.
     using State = std::array<double, 6>;
     enum : std::size_t { kX, kY, kYaw, kAhead, kLeft, kTurn };
-    struct Command {
-        double acceleration_mps2 = 0.0;
-        double steering_rad = 0.0;
-    };
-    [[nodiscard]] double tyre_force_n(double slip_rad, double load_n, double along_n) const;
+    [[nodiscard]] double tyre_force_n(double slip_rad, double b, double load_n, double along_n) const;
     [[nodiscard]] State rates(const State& state, double acceleration_mps2) const;
 
     DynamicCarParameters parameters_;
     State state_;
     double steering_rad_ = 0.0;
-    std::deque<Command> commands_;  ///< on their way
+    std::deque<std::pair<double, double>> commands_;  ///< on their way: acceleration and steering
 };
 
 }  // namespace conelane::experiments
