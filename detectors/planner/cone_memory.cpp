@@ -183,7 +183,10 @@ void ConeMemory::forget() {
 
 Scene ConeMemory::scene(const Pose& pose) const {
     Scene scene{"frame", pose, {}};
-    const double range_m = std::min(range_m_, settings_.max_range_m);
+    // A narrow view shows little in a corner: the cones remembered near the car lead on.
+    const bool is_narrow = range_m_ > 0.0 && widest_rad_ < settings_.narrow_rad;
+    const double least_m = is_narrow ? settings_.near_m : 0.0;
+    const double range_m = std::clamp(range_m_, least_m, settings_.max_range_m);
     std::vector<const RememberedCone*> chosen;
     for (const RememberedCone& cone : cones_) {
         const bool seen_now = cone.last_seen == frame_;
@@ -210,10 +213,14 @@ Scene ConeMemory::scene(const Pose& pose) const {
     return scene;
 }
 
-ConeId ConeMemory::given_id(ConeId own) const {
+const ConeMemory::RememberedCone* ConeMemory::find(ConeId own) const {
     const auto cone = std::ranges::lower_bound(cones_, own, {}, &RememberedCone::id);
-    if (cone == cones_.end() || cone->id != own || cone->given == kNoId) return own;
-    return cone->given;
+    return cone != cones_.end() && cone->id == own ? &*cone : nullptr;
+}
+
+ConeId ConeMemory::given_id(ConeId own) const {
+    const RememberedCone* const cone = find(own);
+    return cone != nullptr && cone->given != kNoId ? cone->given : own;
 }
 
 ConeColor color_of(const ConeMemory::RememberedCone& cone) {

@@ -44,8 +44,11 @@ class ConeMemory {
         std::array<int, 5> colors{};  ///< sightings in each color
     };
     [[nodiscard]] const std::vector<RememberedCone>& cones() const { return cones_; }
-    [[nodiscard]] bool is_seen_lately(const RememberedCone& cone) const {
-        return frame_ - cone.last_seen < settings_.lately_frames;
+    /// Null if it is forgotten.
+    [[nodiscard]] const RememberedCone* find(ConeId own) const;
+    /// In one of the last frames.
+    [[nodiscard]] bool is_seen_lately(const RememberedCone& cone, int frames) const {
+        return frame_ - cone.last_seen < frames;
     }
 
     /// Whether the last frame would have shown a cone at this place. Range and bearings of the sensor are not

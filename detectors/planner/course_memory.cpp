@@ -259,7 +259,8 @@ LaneTrust CourseMemory::trust(const DrivableLane& lane, const ConeMemory& cones)
                        "a cone of the boundary is gone");
     }
     for (const ConeMemory::RememberedCone& cone : cones.cones()) {
-        if (cone.sightings < settings_.min_sightings || !cones.is_seen_lately(cone)) continue;
+        if (cone.sightings < settings_.min_sightings || !cones.is_seen_lately(cone, settings_.lately_frames))
+            continue;
         const bool was_there = std::ranges::any_of(noted_, [&](const NotedCone& noted) {
             return (laid_(noted.place) - cone.position).norm() <= settings_.same_cone_m;
         });

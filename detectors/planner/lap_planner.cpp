@@ -1,4 +1,5 @@
 #include "conelane/invalid_input.hpp"
+#include "detectors/planner/boundary_memory.hpp"
 #include "detectors/planner/cone_memory.hpp"
 #include "detectors/planner/course_memory.hpp"
 #include "detectors/planner/lane_choice.hpp"
@@ -40,6 +41,15 @@ double contested_m(const DrivableLane& seen, const DrivableLane& lane) {
     return seen.trusted_m.value_or(0.0) > shared_m ? shared_m : std::numeric_limits<double>::infinity();
 }
 
+/// Whether a lane takes a cone of a boundary, the only one of `alone`, for one of the other side.
+bool mistakes_side(const Lane& lane, const Lane& alone) {
+    const auto is_in = [](const std::vector<ConeId>& side) {
+        return [&side](ConeId id) { return std::ranges::find(side, id) != side.end(); };
+    };
+    return std::ranges::any_of(alone.left, is_in(lane.right)) ||
+           std::ranges::any_of(alone.right, is_in(lane.left));
+}
+
 /// All that a run changes.
 struct Run {
     Run(const PlannerOptions& options, int laps)
@@ -49,6 +59,7 @@ struct Run {
           course(kCourse, options.drivable.step_m) {}
 
     ConeMemory cones;
+    BoundaryMemory boundaries;
     PathMemory path;
     LaneChoice choice;
     LapCounter counter;
@@ -79,10 +90,12 @@ class LapPlanner final : public Planner {
     struct Choice {
         std::optional<DrivableLane> seen;   ///< the detector's lane, to be driven or not
         std::optional<DrivableLane> fresh;  ///< of this frame
+        bool is_answer = false;             ///< `fresh` is `seen`, not a candidate
     };
 
     [[nodiscard]] std::optional<DrivableLane> fresh_lane(const LaneAnswer& answer, const Scene& scene,
                                                          const DrivableLane& left) const;
+    [[nodiscard]] Choice seen_lane(const LaneAnswer& answer, const Scene& scene, const DrivableLane& left);
     [[nodiscard]] Choice chosen_lane(const LaneAnswer& answer, const Scene& scene, const DrivableLane& left);
     [[nodiscard]] bool follow_course(const Choice& choice, const DrivableLane& left, Plan& plan,
                                      double& until_m);
@@ -124,7 +137,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     with_candidates.keep_candidates = true;
     plan.answer = detector_->detect(scene, with_candidates);
     const DrivableLane left = run_.path.left(frame.pose, frame.time_s);
-    const Choice choice = chosen_lane(plan.answer, scene, left);
+    const Choice choice = seen_lane(plan.answer, scene, left);
     double until_m = std::numeric_limits<double>::infinity();
     if (!follow_course(choice, left, plan, until_m)) choose_path(choice, left, plan, until_m);
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
@@ -179,7 +192,8 @@ void LapPlanner::keep_path(Plan& plan) {
 
 /// `left`: the rest of the lane driven so far, which is trusted up to `until_m` at most.
 void LapPlanner::choose_path(const Choice& choice, const DrivableLane& left, Plan& plan, double until_m) {
-    const auto& [seen, fresh] = choice;
+    const std::optional<DrivableLane>& seen = choice.seen;
+    const std::optional<DrivableLane>& fresh = choice.fresh;
     if (fresh) {
         plan.lane = steadied(*fresh, left, options_.drivable.step_m);
         until_m = std::min(
@@ -206,14 +220,46 @@ void LapPlanner::choose_path(const Choice& choice, const DrivableLane& left, Pla
 
 std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, const Scene& scene,
                                                    const DrivableLane& left) const {
-    DrivableLane lane = drivable(answer, scene, options_.drivable);
-    const double step_m = options_.drivable.step_m;
+    // A lane of one boundary is as wide as the lane driven so far.
+    DrivableOptions options = options_.drivable;
+    if (!left.points.empty()) {
+        const DrivablePoint& here = left.points.front();
+        const double width_m = here.width_left_m + here.width_right_m;
+        options.default_width_m = std::clamp(width_m, kChoice.narrowest_m, kMaxLaneWidth_m);
+    }
+    DrivableLane lane = drivable(answer, scene, options);
+    const double step_m = options.step_m;
     if (lane.closed) {
         const auto trusted_m = lane.trusted_m;
         lane = stretch(lane, 0.0, lane.length_m, step_m);
         lane.trusted_m = trusted_m;
     }
     return begun_at_car(lane, scene.pose, left.points.empty() ? nullptr : &left, step_m);
+}
+
+/// The lane of a frame, which teaches the sides of cones where it is trusted. A lane of the detector that is
+/// not trusted gives way to a known boundary that is in view alone.
+LapPlanner::Choice LapPlanner::seen_lane(const LaneAnswer& answer, const Scene& scene,
+                                         const DrivableLane& left) {
+    run_.boundaries.pass(scene.pose, run_.cones);
+    const bool is_two_sided = !answer.lane.left.empty() && !answer.lane.right.empty();
+    const double trusted_m = is_two_sided ? answer.trusted_m.value_or(0.0) : 0.0;
+    std::optional<Lane> alone;
+    if (trusted_m <= 0.0) alone = run_.boundaries.alone(scene, run_.cones);
+    if (alone && (!is_two_sided || mistakes_side(answer.lane, *alone))) {
+        LaneAnswer outer;
+        outer.status = LaneStatus::found;
+        outer.lane = *alone;
+        outer.trusted_m = kChoice.alone_m;
+        Choice choice = chosen_lane(outer, scene, left);
+        if (choice.is_answer) run_.boundaries.learn(outer.lane, *choice.fresh, kChoice.passing_m, run_.cones);
+        if (choice.seen) return choice;
+    }
+    Choice choice = chosen_lane(answer, scene, left);
+    const double sure_m = answer.confidence.value_or(0.0) > 0.5 ? kChoice.passing_m : 0.0;
+    if (is_two_sided && choice.is_answer)
+        run_.boundaries.learn(answer.lane, *choice.fresh, std::max(trusted_m, sure_m), run_.cones);
+    return choice;
 }
 
 /// The lane of a frame: the detector's answer if it continues the lane driven so far or outweighs it, else
@@ -243,8 +289,9 @@ LapPlanner::Choice LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene
         }
     }
     const double weight = answer.confidence.value_or(kChoice.unsure_weight);
-    if (run_.choice.take(*seen, left, weight, kept_weight)) kept = seen;
-    return {std::move(seen), std::move(kept)};
+    const bool is_answer = run_.choice.take(*seen, left, weight, kept_weight);
+    if (is_answer) kept = seen;
+    return {std::move(seen), std::move(kept), is_answer};
 }
 
 LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {

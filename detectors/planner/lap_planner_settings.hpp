@@ -19,7 +19,8 @@ struct ConeMemorySettings {
     double blind_m = 2.0;      ///< within this distance of the car no cone is expected to be seen
     int fleeting_frames = 10;  ///< a cone seen once is forgotten after this many frames
     double max_range_m = 30.0;  ///< range of the scene for the detector
-    int lately_frames = 5;      ///< a cone is seen lately that one of so many frames showed
+    double narrow_rad = 1.05;   ///< a view whose widest bearing is smaller is narrow
+    double near_m = 10.0;       ///< shortest range of the scene of a narrow view
     double behind_m = 5.0;      ///< cones up to this distance behind the car are in the scene
     std::size_t max_cones =
         3000;  ///< largest number of remembered cones; those seen longest ago are forgotten first
@@ -44,6 +45,9 @@ struct LaneChoiceSettings {
     double min_kept_weight = 0.02;  ///< a less probable candidate does not count
     double known_ahead_m = 50.0;    ///< length of the lap before that is driven by
     double min_left_m = 3.0;        ///< a lane with a shorter rest does not resist a new one
+    double narrowest_m = 2.5;       ///< width of a lane that is inferred from one boundary
+    double alone_m = 10.0;          ///< trusted length of such a lane
+    double passing_m = 5.0;         ///< length ahead of the car in which its cones become known
     double max_offset_m = 2.5;      ///< distance from car to path: farther away, the car is off it
 };
 
@@ -73,6 +77,7 @@ struct CourseSettings {
     int fitting_frames = 3;  ///< frames until the course is trusted, or not trusted any more
     int missed_frames = 6;   ///< a boundary cone that so many frames in a row should show is gone
     int min_sightings = 3;   ///< of a cone that is noted, or new
+    int lately_frames = 5;   ///< a new cone counts that one of so many frames showed
     double in_lane_m = 0.6;  ///< a cone so far inside the boundaries is in the way
     double before_m = 1.0;   ///< the trust ends so far before what contradicts the course
 };

@@ -268,6 +268,8 @@ std::string plan_line(std::size_t frame, double time_s, const Plan& plan) {
                       {"lap", plan.lap},      {"stop", plan.stop}, {"age_s", plan.age_s},
                       {"safe_m", plan.safe_m}};
     if (!plan.phase.empty()) json["phase"] = plan.phase;
+    if (!plan.reason.empty()) json["reason"] = plan.reason;
+    if (plan.stop_line_m) json["stop_line_m"] = *plan.stop_line_m;
     ordered_json answer{{"status", to_string(plan.answer.status)}};
     if (plan.answer.stopped_by) answer["stopped_by"] = to_string(*plan.answer.stopped_by);
     if (!plan.answer.message.empty()) answer["message"] = plan.answer.message;

@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/lane_stretch.hpp"
 #include "evaluation/seeded_random.hpp"
+#include "experiments/race/dynamic_car.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>
@@ -31,6 +32,7 @@ constexpr double kMiddleAhead_m = 0.775;  ///< of the rear axle
 constexpr double kUnsteady_m = 0.3;
 constexpr double kNear_m = 10.0;  ///< length ahead of the car in which a path is compared
 constexpr double kMaxAcceleration_mps2 = 6.0;
+constexpr double kSpeedLag_s = 0.1;    ///< in which a car with slip is to reach the speed wanted
 constexpr double kCreep_mps = 1.5;     ///< on a path that is not trusted, where the speed follows the trust
 constexpr double kSafeAhead_m = 60.0;  ///< longest part of a path that is driven by
 constexpr double kSteadyAt_m = 5.0;
@@ -77,31 +79,6 @@ std::optional<double> p95(std::vector<double> values) {
     return values[static_cast<std::size_t>(rank)];
 }
 
-/// A path as a lane, with curvatures.
-DrivableLane lane_along(const std::vector<Point>& path) {
-    DrivableLane lane;
-    for (std::size_t i = 0; i < path.size(); ++i) {
-        const Point step = path[std::min(i + 1, path.size() - 1)] - path[i];
-        lane.points.push_back({.s_m = lane.length_m, .heading_rad = std::atan2(step.y(), step.x())});
-        lane.length_m += step.norm();
-    }
-    if (path.size() > 1) lane.points.back().heading_rad = lane.points[path.size() - 2].heading_rad;
-    even_curvatures(lane);
-    return lane;
-}
-
-/// The beginning of a path, of about this length.
-std::vector<Point> beginning(const std::vector<Point>& path, double length_m) {
-    std::vector<Point> points;
-    double along_m = 0.0;
-    for (const Point& point : path) {
-        if (!points.empty()) along_m += (point - points.back()).norm();
-        points.push_back(point);
-        if (along_m >= length_m) break;
-    }
-    return points;
-}
-
 using Generator = boost::random::mt19937_64;
 
 double uniform(Generator& random, double low, double high) {
@@ -129,6 +106,7 @@ struct Car {
     bool has_begun = false;  ///< it has had a path
     bool is_stopping = false;
     bool is_braking = false;
+    std::optional<DynamicCar> with_slip = {};  ///< moves `vehicle`, if present
 
     [[nodiscard]] Point middle() const { return middle_of(vehicle.pose); }
 
@@ -144,15 +122,11 @@ struct Car {
     }
 
     /// By the speeds along the path, but no slower than a creep.
-    void change_speed(const VehicleLimits& limits) {
-        double wanted_mps = 0.0;
-        if (path) {
-            const auto next = std::ranges::find_if(
-                path->speeds, [&](const SpeedPoint& point) { return point.s_m > path->from_m; });
-            wanted_mps = std::max(kCreep_mps, next == path->speeds.end() ? 0.0 : next->v_mps);
-        }
-        speed_mps = std::clamp(wanted_mps, std::max(0.0, speed_mps - limits.a_brake_mps2 * kStep_s),
-                               speed_mps + limits.a_drive_mps2 * kStep_s);
+    [[nodiscard]] double safe_speed_mps() const {
+        if (!path) return 0.0;
+        const auto next = std::ranges::find_if(
+            path->speeds, [&](const SpeedPoint& point) { return point.s_m > path->from_m; });
+        return std::max(kCreep_mps, next == path->speeds.end() ? 0.0 : next->v_mps);
     }
 
     void take(Answer answer) {
@@ -172,18 +146,32 @@ struct Car {
     }
 
     void drive(const RaceOptions& options, const MapFrame& map) {
-        const double change_mps = kMaxAcceleration_mps2 * kStep_s;
+        VehicleLimits limits{.a_brake_mps2 = kMaxAcceleration_mps2, .a_drive_mps2 = kMaxAcceleration_mps2};
+        double wanted_mps = speed_mps;
         if (is_braking || (is_stopping && options.with_stop)) {
-            speed_mps = std::max(0.0, speed_mps - change_mps);
+            wanted_mps = 0.0;
         } else if (options.by_safe) {
-            change_speed(options.limits);
+            wanted_mps = safe_speed_mps();
+            limits = options.limits;
         } else if (has_begun || !options.with_stop) {
-            speed_mps = std::min(options.speed_mps, speed_mps + change_mps);
+            wanted_mps = options.speed_mps;
+        }
+        if (!with_slip) {
+            speed_mps = std::clamp(wanted_mps, std::max(0.0, speed_mps - limits.a_brake_mps2 * kStep_s),
+                                   speed_mps + limits.a_drive_mps2 * kStep_s);
         }
         const double wanted_rad =
             path ? pursue(map.to_map(believed()), path->drive.path, lookahead_m(speed_mps), path->from_m)
                  : 0.0;  // straight on without a path
-        vehicle.drive(speed_mps, wanted_rad, kStep_s);
+        if (with_slip) {
+            const double change_mps2 = (wanted_mps - speed_mps) / kSpeedLag_s;
+            with_slip->drive(std::clamp(change_mps2, -limits.a_brake_mps2, limits.a_drive_mps2), wanted_rad,
+                             kStep_s);
+            speed_mps = with_slip->speed_mps();
+            vehicle.pose = with_slip->rear_axle();
+        } else {
+            vehicle.drive(speed_mps, wanted_rad, kStep_s);
+        }
     }
 };
 
@@ -244,7 +232,7 @@ class Sensor {
         if (options_.fault == RaceFault::ids && comes(kFaultEvery_s)) world_.change_ids();
         map_ = first_map_.turned(drift_sense_ * options_.drift_rad * share, start_,
                                  options_.drift_m * share * Pose{{0.0, 0.0}, drift_direction_rad_}.heading());
-        const Pose believed = world_.disturbed(car.vehicle.pose);
+        const Pose believed = world_.disturbed(car.vehicle.pose, kFrame_s);
         car.believe(believed);
         Frame frame = world_.look(believed, map_, time_s);
         const bool is_dark = options_.fault == RaceFault::blackout && time_s >= kBlackoutEvery_s &&
@@ -504,7 +492,9 @@ class Run {
                .speed_mps = options.with_stop || options.by_safe ? 0.0 : options.speed_mps},
           sensor_(course, options, car_.vehicle.pose.position, random_),
           transport_(options, random_),
-          referee_(course, options, car_.middle()) {}
+          referee_(course, options, car_.middle()) {
+        if (options.with_slip) car_.with_slip.emplace(car_.vehicle.pose, car_.speed_mps);
+    }
 
     RaceResult drive() {
         int step = 0;

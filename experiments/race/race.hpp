@@ -37,6 +37,7 @@ struct RaceOptions {
     double speed_mps = 6.0;
     /// As fast as the path and its trusted length allow, instead of speed_mps; from a standstill.
     bool by_safe = false;
+    bool with_slip = false;  ///< drives a DynamicCar instead of a Vehicle
     VehicleLimits limits = {};
     double latency_s = 0.05;  ///< from a frame to its path; simulated, so that a race can be repeated
     /// True: it starts at rest and has to stop by itself. False: it rolls; the last lap ends the race.

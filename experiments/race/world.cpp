@@ -1,5 +1,6 @@
 #include "experiments/race/world.hpp"
 
+#include "detectors/planner/lane_stretch.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/course.hpp"
 
@@ -100,11 +101,19 @@ void World::change_ids() {
     for (Cone& point : points_) point.id = options_.with_ids ? new_id() : kNoId;
 }
 
-Pose World::disturbed(const Pose& truth) {
+Pose World::disturbed(const Pose& truth, double step_s) {
     const Condition& condition = options_.condition;
     boost::random::normal_distribution<double> normal;
-    const double to_left_m = condition.pose_noise_lateral_m * normal(random_);
-    const double yaw_rad = condition.pose_noise_yaw_rad * normal(random_);
+    std::array<double, 2> error{};
+    for (double& part : error) part = normal(random_);
+    if (pose_error_ && options_.pose_time_s > 0.0) {
+        const double kept = std::exp(-step_s / options_.pose_time_s);
+        for (std::size_t i = 0; i < error.size(); ++i)
+            error[i] = kept * (*pose_error_)[i] + std::sqrt(1.0 - kept * kept) * error[i];
+    }
+    pose_error_ = error;
+    const double to_left_m = condition.pose_noise_lateral_m * error[0];
+    const double yaw_rad = condition.pose_noise_yaw_rad * error[1];
     return {truth.position + to_left_m * Point(-truth.heading().y(), truth.heading().x()),
             truth.yaw_rad + yaw_rad};
 }
@@ -119,8 +128,10 @@ Frame World::look(const Pose& believed, const MapFrame& map, double time_s) {
         if (!sees(believed, point.position)) continue;
         if (uniform(random_) < condition.miss_rate) continue;
         Cone seen = point;
-        const double x_m = condition.noise_sigma_m * normal(random_);
-        const double y_m = condition.noise_sigma_m * normal(random_);
+        const double distance_m = (point.position - believed.position).norm();
+        const double sigma_m = condition.noise_sigma_m + options_.noise_by_range * distance_m;
+        const double x_m = sigma_m * normal(random_);
+        const double y_m = sigma_m * normal(random_);
         seen.position = map.to_map(Point(seen.position + Point(x_m, y_m)));
         frame.cones.push_back(seen);
     }
@@ -217,6 +228,29 @@ double pursue(const Pose& car, std::span<const Point> path, double lookahead_m, 
     if (distance_m < 1e-6) return 0.0;
     const double curvature_1pm = 2.0 * car.left_m(target) / (distance_m * distance_m);
     return std::atan(limits.wheelbase_m * curvature_1pm);
+}
+
+DrivableLane lane_along(const std::vector<Point>& path) {
+    DrivableLane lane;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+        const Point step = path[std::min(i + 1, path.size() - 1)] - path[i];
+        lane.points.push_back({.s_m = lane.length_m, .heading_rad = std::atan2(step.y(), step.x())});
+        lane.length_m += step.norm();
+    }
+    if (path.size() > 1) lane.points.back().heading_rad = lane.points[path.size() - 2].heading_rad;
+    even_curvatures(lane);
+    return lane;
+}
+
+std::vector<Point> beginning(const std::vector<Point>& path, double length_m) {
+    std::vector<Point> points;
+    double along_m = 0.0;
+    for (const Point& point : path) {
+        if (!points.empty()) along_m += (point - points.back()).norm();
+        points.push_back(point);
+        if (along_m >= length_m) break;
+    }
+    return points;
 }
 
 }  // namespace conelane::experiments

@@ -4,9 +4,11 @@
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/course.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,8 +33,10 @@ struct SightOptions {
     double false_positive_rate = 0.0;  ///< false positives / all points in view, in [0, 0.99]
     double range_m = 20.0;
     double fov_rad = std::numbers::pi;  ///< angle of view, up to pi: the half disc
-    bool with_color = false;            ///< else every cone is of unknown color
-    bool with_ids = true;               ///< else every cone has kNoId
+    double noise_by_range = 0.0;        ///< standard deviation added to the noise, for each metre of distance
+    double pose_time_s = 0.0;  ///< correlation time of the pose error; 0: each call draws another one
+    bool with_color = false;   ///< else every cone is of unknown color
+    bool with_ids = true;      ///< else every cone has kNoId
     std::uint64_t seed = 0;
 };
 
@@ -41,8 +45,9 @@ class World {
   public:
     World(const RaceCourse& course, const SightOptions& options);
 
-    /// The pose that the car believes, in the frame of the world: each call draws new noise.
-    [[nodiscard]] Pose disturbed(const Pose& truth);
+    /// The pose that the car believes, in the frame of the world. Its error is a process of first order
+    /// (Gauss and Markov) with `pose_time_s`. `step_s`: since the last call.
+    [[nodiscard]] Pose disturbed(const Pose& truth, double step_s);
 
     /// The cones that are seen, in the map frame. `believed` is in the frame of the world. Each call draws
     /// which cones and persistent false positives are missed, and their noise.
@@ -67,6 +72,7 @@ class World {
     std::vector<Cone> points_;  ///< of the world: cones and persistent false positives
     std::vector<Point> false_positives_;
     Generator random_;
+    std::optional<std::array<double, 2>> pose_error_;  ///< to the left and in yaw, in standard deviations
     ConeId id_space_ = 0;
     std::vector<ConeId> used_ids_;
     [[nodiscard]] ConeId new_id();
@@ -92,5 +98,11 @@ struct Vehicle {
 /// the path has fewer than two points.
 [[nodiscard]] double pursue(const Pose& car, std::span<const Point> path, double lookahead_m, double& from_m,
                             const SteeringLimits& limits = {});
+
+/// A path as a lane, with curvatures.
+[[nodiscard]] DrivableLane lane_along(const std::vector<Point>& path);
+
+/// The beginning of a path, of about this length.
+[[nodiscard]] std::vector<Point> beginning(const std::vector<Point>& path, double length_m);
 
 }  // namespace conelane::experiments

@@ -51,6 +51,7 @@ struct Options {
     std::optional<int> laps;
     double fov_deg = 180.0;
     std::string speed = "6";
+    std::string car = "kinematic";
     double latency_ms = 50.0;
     double start_deg = 0.0;
     double drift_deg = 0.0;
@@ -70,8 +71,12 @@ struct WeightedCourse {
 
 /// Measures what the same car needs for a first lap and a later one, if it knows its pose and the course.
 void add_known_laps(const RaceCourse& course, const RaceOptions& as_raced, RaceResult& result) {
-    const RaceOptions options{
-        .sight = {}, .laps = 2, .by_safe = true, .limits = as_raced.limits, .latency_s = as_raced.latency_s};
+    const RaceOptions options{.sight = {},
+                              .laps = 2,
+                              .by_safe = true,
+                              .with_slip = as_raced.with_slip,
+                              .limits = as_raced.limits,
+                              .latency_s = as_raced.latency_s};
     const RaceResult known = race(course, options, truth_driver(course, options.laps, 60.0));
     for (const std::size_t later : {0U, 1U}) result.by_lap[later].known_lap_s = known.by_lap[later].time_s;
 }
@@ -194,6 +199,9 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"fov_deg", options.fov_deg},
             {"speed_mps", options.race.by_safe ? nlohmann::ordered_json("safe")
                                                : nlohmann::ordered_json(options.race.speed_mps)},
+            {"car", options.car},
+            {"range_noise", options.race.sight.noise_by_range},
+            {"pose_time_s", options.race.sight.pose_time_s},
             {"latency_ms", options.latency_ms},
             {"colors", options.race.sight.with_color},
             {"ids", options.ids},
@@ -258,6 +266,7 @@ void run_races(Options& options) {
     options.race.fault = race_fault(options.fault);
     options.race.sight.fov_rad = options.fov_deg * kDegree_rad;
     options.race.by_safe = options.speed == "safe";
+    options.race.with_slip = options.car == "dynamic";
     if (!options.race.by_safe) options.race.speed_mps = std::stod(options.speed);
     options.race.latency_s = options.latency_ms / 1000.0;
     options.race.start_error_rad = options.start_deg * kDegree_rad;
@@ -349,6 +358,12 @@ void add_race_command(CLI::App& program) {
         ->check((CLI::Range(0.5, 40.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case)) |
                 CLI::IsMember({"safe"}))
         ->capture_default_str();
+    add_word_option(command, "--car", options->car, {"kinematic", "dynamic"},
+                    "kinematic: it does not slip; dynamic: tyres slip and saturate, commands come late");
+    add_number_option(command, "--range-noise", options->race.sight.noise_by_range, 0.0, 0.1,
+                      "noise of a cone that is added for each metre of its distance [m]");
+    add_number_option(command, "--pose-time-s", options->race.sight.pose_time_s, 0.0, 60.0,
+                      "correlation time of the pose error [s]; 0: drawn in each frame");
     command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
     add_number_option(command, "--latency-ms", options->latency_ms, 0.0, 1000.0,
                       "simulated time from a frame to its path");

@@ -52,6 +52,19 @@ TEST_F(RaceCommand, BySafeSpeedFirstAndLaterLapsAreCompared) {
     expect_refused("race --tracks generated:kidney --methods truth --fov 200 --out out2", {"--fov"});
 }
 
+TEST_F(RaceCommand, ACarWithSlipAndSmootherNoiseDriveToo) {
+    const std::string kidney = "race --tracks generated:kidney --methods truth ";
+    run_well(kidney + "--car dynamic --condition paper --out slip");
+    run_well(kidney + "--range-noise 0.02 --pose-time-s 2 --condition car --out noise");
+    for (const char* const out : {"slip", "noise"}) {
+        const nlohmann::json json = nlohmann::json::parse(text_of(path(out) / "race.json"));
+        EXPECT_EQ(json.at("races").at(0).at("end"), "finished") << out;
+        EXPECT_EQ(json.at("car"), out == std::string("slip") ? "dynamic" : "kinematic");
+    }
+    expect_refused(kidney + "--car flying --out out", {"--car"});
+    expect_refused(kidney + "--range-noise 1 --out out", {"--range-noise"});
+}
+
 // Weights of zeros give other lanes than the shipped ones, so the driven path shows which were used.
 TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
     std::filesystem::create_directories(path("folds") / "a");
