@@ -2,11 +2,6 @@
 
 #include "conelane/learned_costs.hpp"
 
-#include <array>
-#include <cstddef>
-#include <span>
-#include <string_view>
-
 namespace conelane {
 
 /// What a learned cost of the strip program is of. All are the same for a mirrored scene.

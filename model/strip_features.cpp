@@ -2,10 +2,6 @@
 
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace conelane {
 namespace {
 

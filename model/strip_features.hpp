@@ -1,13 +1,9 @@
 #pragma once
 
 #include "conelane/lane_graph_problem.hpp"
-#include "conelane/scene.hpp"
 #include "model/strip_costs.hpp"
 
-#include <array>
 #include <compare>
-#include <cstddef>
-#include <vector>
 
 namespace conelane {
 

@@ -1,12 +1,5 @@
 #include "model/strip_model.hpp"
 
-#include "model/deadline.hpp"
-
-#include <algorithm>
-#include <array>
-#include <string_view>
-#include <utility>
-
 namespace conelane {
 namespace {
 

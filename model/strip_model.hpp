@@ -3,14 +3,6 @@
 #include "model/binary_program.hpp"
 #include "model/strip_problem.hpp"
 
-#include <array>
-#include <cstddef>
-#include <initializer_list>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 namespace conelane {
 
 /// The binary program of a strip problem, which must outlive it, and the conversion of its points to lanes.

@@ -6,12 +6,6 @@
 #include "model/strip_features.hpp"
 #include "model/valid_scene_problem.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <utility>
-
 namespace conelane {
 namespace {
 

@@ -1,17 +1,9 @@
 #pragma once
 
 #include "conelane/lane_graph_problem.hpp"
-#include "conelane/scene.hpp"
 #include "model/strip_costs.hpp"
 
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
 
 namespace conelane {
 

@@ -3,12 +3,7 @@
 #include "detectors/planner/lane_stretch.hpp"
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <iterator>
-#include <limits>
-#include <utility>
 
 namespace conelane {
 namespace {

@@ -1,13 +1,6 @@
 #pragma once
 
-#include "conelane/drivable_lane.hpp"
-#include "conelane/lane.hpp"
-#include "conelane/scene.hpp"
 #include "detectors/planner/cone_memory.hpp"
-
-#include <array>
-#include <optional>
-#include <vector>
 
 namespace conelane {
 

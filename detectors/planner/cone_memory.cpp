@@ -2,8 +2,6 @@
 
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <tuple>
 
 namespace conelane {

@@ -1,16 +1,10 @@
 #pragma once
 
 #include "conelane/planner.hpp"
-#include "conelane/scene.hpp"
-#include "detectors/planner/lap_planner_settings.hpp"
 #include "detectors/planner/rigid_shift.hpp"
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace conelane {
 

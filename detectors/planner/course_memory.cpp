@@ -2,11 +2,6 @@
 
 #include "detectors/drivable/smoothing_spline.hpp"
 #include "detectors/planner/lane_stretch.hpp"
-#include "model/geometry.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 
 namespace conelane {
 namespace {

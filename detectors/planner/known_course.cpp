@@ -1,9 +1,6 @@
 #include "detectors/planner/known_course.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 
 namespace conelane {
 namespace {

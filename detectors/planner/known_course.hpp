@@ -1,11 +1,6 @@
 #pragma once
 
-#include "conelane/drivable_lane.hpp"
 #include "conelane/planner.hpp"
-
-#include <optional>
-#include <string_view>
-#include <vector>
 
 namespace conelane {
 

@@ -1,19 +1,8 @@
 #include "conelane/invalid_input.hpp"
-#include "detectors/planner/known_course.hpp"
 #include "detectors/planner/known_gates.hpp"
-#include "detectors/planner/known_registration.hpp"
 #include "detectors/planner/planners.hpp"
-#include "model/deadline.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <optional>
-#include <string>
 #include <utility>
-#include <variant>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -1,9 +1,6 @@
 #include "detectors/planner/known_gates.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 namespace conelane {
 namespace {

@@ -2,9 +2,6 @@
 
 #include "detectors/planner/known_registration.hpp"
 
-#include <cstddef>
-#include <vector>
-
 namespace conelane {
 
 /// Finds the lines of an acceleration along its lane, which the boundaries do not determine.

@@ -1,9 +1,6 @@
 #include "detectors/planner/known_registration.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/Cholesky>

@@ -3,10 +3,6 @@
 #include "detectors/planner/known_course.hpp"
 #include "model/deadline.hpp"
 
-#include <optional>
-#include <span>
-#include <vector>
-
 namespace conelane {
 
 /// A cone seen in one or more frames.

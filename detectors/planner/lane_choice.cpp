@@ -2,8 +2,6 @@
 
 #include "detectors/planner/lane_stretch.hpp"
 
-#include <algorithm>
-#include <cstddef>
 #include <functional>
 #include <limits>
 #include <utility>

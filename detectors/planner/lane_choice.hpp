@@ -1,15 +1,8 @@
 #pragma once
 
-#include "conelane/drivable_lane.hpp"
-#include "conelane/scene.hpp"
-#include "detectors/planner/lap_planner_settings.hpp"
 #include "detectors/planner/rigid_shift.hpp"
 
 #include <array>
-#include <cstddef>
-#include <optional>
-#include <string_view>
-#include <vector>
 
 namespace conelane {
 

@@ -2,13 +2,9 @@
 
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

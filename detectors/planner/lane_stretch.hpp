@@ -1,9 +1,6 @@
 #pragma once
 
 #include "conelane/drivable_lane.hpp"
-#include "conelane/scene.hpp"
-
-#include <optional>
 
 namespace conelane {
 

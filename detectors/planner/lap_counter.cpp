@@ -2,12 +2,6 @@
 
 #include "detectors/planner/lane_stretch.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <utility>
-#include <vector>
-
 namespace conelane {
 namespace {
 

@@ -1,12 +1,6 @@
 #pragma once
 
-#include "conelane/drivable_lane.hpp"
-#include "conelane/scene.hpp"
 #include "detectors/planner/cone_memory.hpp"
-#include "detectors/planner/lap_planner_settings.hpp"
-#include "detectors/planner/rigid_shift.hpp"
-
-#include <optional>
 
 namespace conelane {
 

@@ -1,19 +1,10 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/boundary_memory.hpp"
-#include "detectors/planner/cone_memory.hpp"
 #include "detectors/planner/course_memory.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
 #include "detectors/planner/lap_counter.hpp"
 #include "detectors/planner/planners.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -3,11 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/planners.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <span>
-#include <string>
 
 namespace conelane {
 namespace {

@@ -2,8 +2,6 @@
 
 #include "conelane/planner.hpp"
 
-#include <memory>
-
 namespace conelane {
 
 /// Acceleration and skidpad: the rules give the shape of the course. The shape is registered to the cones,

@@ -2,9 +2,6 @@
 
 #include "model/geometry.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <numbers>
 
 namespace conelane {

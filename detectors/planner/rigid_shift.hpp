@@ -1,12 +1,9 @@
 #pragma once
 
 #include "conelane/drivable_lane.hpp"
-#include "conelane/point.hpp"
 #include "detectors/planner/lap_planner_settings.hpp"
 
-#include <optional>
 #include <span>
-#include <vector>
 
 namespace conelane {
 

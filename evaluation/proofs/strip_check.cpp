@@ -3,13 +3,7 @@
 #include "evaluation/world/annotated_scene.hpp"
 #include "model/lane_graph_reference.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
 #include <set>
-#include <string>
-#include <vector>
 
 namespace conelane {
 namespace {

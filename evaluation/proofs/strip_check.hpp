@@ -1,7 +1,6 @@
 #pragma once
 
 #include "conelane/check.hpp"
-#include "conelane/lane.hpp"
 #include "model/strip_problem.hpp"
 
 namespace conelane {

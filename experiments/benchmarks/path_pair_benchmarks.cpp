@@ -12,7 +12,6 @@
 // Scenes are of generated tracks with 30 % false positives, or those of the file that the environment
 // variable CONELANE_SCENES names.
 
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"

@@ -2,7 +2,6 @@
 // the processor time. The frames are a lap of each generated circuit, driven by the planner: condition `car`,
 // 30 % false positives, 20 m range.
 
-#include "conelane/detectors.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "experiments/race/race.hpp"

@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"

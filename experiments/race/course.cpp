@@ -4,15 +4,8 @@
 #include "evaluation/seeded_random.hpp"
 #include "evaluation/world/centre_line.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <utility>
-
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 
 namespace conelane::experiments {

@@ -2,13 +2,6 @@
 
 #include "conelane/planner.hpp"
 #include "evaluation/world/track.hpp"
-#include "model/geometry.hpp"
-
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane::experiments {
 

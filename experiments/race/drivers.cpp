@@ -1,15 +1,8 @@
 #include "experiments/race/drivers.hpp"
 
-#include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "evaluation/outside/outside_program.hpp"
 #include "evaluation/outside/point_snapping.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <string>
-#include <utility>
 
 namespace conelane::experiments {
 namespace {

@@ -3,10 +3,6 @@
 #include "experiments/methods/method.hpp"
 #include "experiments/race/race.hpp"
 
-#include <optional>
-#include <string>
-#include <vector>
-
 namespace conelane::experiments {
 
 /// What drives a car in a race.

@@ -1,9 +1,5 @@
 #include "experiments/race/dynamic_car.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 namespace conelane::experiments {
 namespace {
 

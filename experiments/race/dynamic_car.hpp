@@ -2,7 +2,6 @@
 
 #include "experiments/race/world.hpp"
 
-#include <array>
 #include <deque>
 #include <utility>
 

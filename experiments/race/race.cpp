@@ -6,16 +6,9 @@
 #include "experiments/race/dynamic_car.hpp"
 #include "model/deadline.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <deque>
-#include <numbers>
 #include <set>
-#include <utility>
 
 #include <boost/random/uniform_01.hpp>
-#include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 

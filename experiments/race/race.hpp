@@ -1,19 +1,9 @@
 #pragma once
 
-#include "conelane/planner.hpp"
 #include "conelane/speed_profile.hpp"
-#include "evaluation/world/scene_generation.hpp"
-#include "experiments/race/course.hpp"
 #include "experiments/race/world.hpp"
 
-#include <array>
-#include <cstdint>
 #include <functional>
-#include <limits>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane::experiments {
 

@@ -3,13 +3,6 @@
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/scoring/text_table.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <optional>
-#include <string_view>
-#include <utility>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>

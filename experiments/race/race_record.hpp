@@ -2,10 +2,6 @@
 
 #include "experiments/race/race.hpp"
 
-#include <span>
-#include <string>
-#include <vector>
-
 #include <nlohmann/json_fwd.hpp>
 
 namespace conelane::experiments {

@@ -1,16 +1,9 @@
 #pragma once
 
-#include "conelane/planner.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/course.hpp"
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <numbers>
-#include <optional>
-#include <span>
-#include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
 

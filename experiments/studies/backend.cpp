@@ -2,13 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/version.hpp"
-#include "evaluation/outside/outside_solver.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <span>
-#include <utility>
 
 #include <fmt/format.h>
 

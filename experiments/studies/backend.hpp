@@ -1,16 +1,6 @@
 #pragma once
 
-#include "conelane/formulation.hpp"
-#include "conelane/rld_solver.hpp"
-#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/outside_solver.hpp"
-
-#include <cstddef>
-#include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane::experiments {
 

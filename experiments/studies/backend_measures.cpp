@@ -1,15 +1,6 @@
 #include "experiments/studies/backend_measures.hpp"
 
-#include "evaluation/scoring/statistics.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <iterator>
-#include <map>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,9 +1,6 @@
 #pragma once
 
 #include "experiments/studies/solve_rows.hpp"
-#include "experiments/studies/study.hpp"
-
-#include <string>
 
 namespace conelane::experiments {
 

@@ -1,18 +1,8 @@
-#include "conelane/invalid_input.hpp"
-#include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/provenance.hpp"
-#include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/options/command_line.hpp"
 #include "experiments/studies/backend_measures.hpp"
 #include "experiments/studies/machine.hpp"
-#include "experiments/studies/solve_rows.hpp"
-#include "experiments/studies/study.hpp"
 #include "solvers/registry.hpp"
-
-#include <algorithm>
-#include <map>
-#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "experiments/studies/solve_rows.hpp"
 #include "model/strip_model.hpp"

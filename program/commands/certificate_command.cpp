@@ -1,4 +1,3 @@
-#include "conelane/bound_certificate.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"

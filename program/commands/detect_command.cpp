@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "program/commands/command_parts.hpp"
 #include "solvers/registry.hpp"
 

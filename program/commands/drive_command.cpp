@@ -1,4 +1,3 @@
-#include "conelane/drivable_lane.hpp"
 #include "evaluation/formats/frame_file.hpp"
 #include "experiments/report/report.hpp"
 #include "program/commands/command_parts.hpp"

@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/program_files.hpp"
 #include "evaluation/formats/program_solution.hpp"
 #include "evaluation/formats/solution_file.hpp"

@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "program/commands/commands.hpp"

@@ -1,29 +1,13 @@
-#include "conelane/invalid_input.hpp"
-#include "evaluation/formats/atomic_file.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/provenance.hpp"
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/progress/progress.hpp"
-#include "evaluation/world/scene_generation.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
-#include "experiments/methods/method.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/command_parts.hpp"
-#include "program/commands/commands.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <cstddef>
 #include <exception>
-#include <filesystem>
-#include <mutex>
-#include <numbers>
-#include <system_error>
 #include <thread>
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::program {
 namespace {

@@ -1,4 +1,3 @@
-#include "conelane/drivable_lane.hpp"
 #include "experiments/report/report.hpp"
 #include "program/commands/command_parts.hpp"
 

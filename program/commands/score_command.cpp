@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "experiments/comparison/results.hpp"
 #include "program/commands/command_parts.hpp"

@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/outside/outside_solver.hpp"

@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "learning/tuning/detector_tuning.hpp"
 #include "learning/tuning/rld_tuning.hpp"

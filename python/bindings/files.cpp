@@ -1,4 +1,3 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/outside/point_snapping.hpp"

@@ -1,23 +1,14 @@
-#include "model/deadline.hpp"
 #include "solvers/detail/exclusive_section.hpp"
-#include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/invented_point.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
 #include "solvers/milp/detail/own_process.hpp"
-#include "solvers/milp/milp_solver.hpp"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
-#include <string>
-#include <vector>
 
 #include <coin/CbcConfig.h>
-#include <coin/CbcModel.hpp>
 #include <coin/CbcSolver.hpp>
 #include <coin/ClpConfig.h>
-#include <coin/OsiClpSolverInterface.hpp>
 
 namespace conelane {
 namespace {

@@ -1,17 +1,8 @@
-#include "model/deadline.hpp"
-#include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
 #include "solvers/milp/milp_solver.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include <coin/CbcConfig.h>
-#include <coin/CbcModel.hpp>
 #include <coin/ClpConfig.h>
-#include <coin/OsiClpSolverInterface.hpp>
 
 namespace conelane {
 namespace {

@@ -1,16 +1,8 @@
-#include "model/deadline.hpp"
-#include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
 #include "solvers/milp/milp_solver.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <span>
-#include <vector>
-
 #include <coin/ClpConfig.h>
 #include <coin/ClpSimplex.hpp>
-#include <coin/OsiClpSolverInterface.hpp>
 
 namespace conelane {
 namespace {

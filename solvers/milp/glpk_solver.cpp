@@ -1,13 +1,6 @@
-#include "model/deadline.hpp"
 #include "solvers/milp/milp_solver.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include <glpk.h>
 

@@ -1,11 +1,6 @@
-#include "model/deadline.hpp"
 #include "solvers/milp/milp_solver.hpp"
 
-#include <cmath>
-#include <memory>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include <interfaces/highs_c_api.h>
 

@@ -1,12 +1,6 @@
 #include "model/connecting_flow.hpp"
-#include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/milp_solver.hpp"
-
-#include <algorithm>
-#include <optional>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -3,15 +3,7 @@
 #include "conelane/core_solvers.hpp"
 #include "model/binary_program.hpp"
 
-#include <cstdint>
 #include <functional>
-#include <limits>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane {
 

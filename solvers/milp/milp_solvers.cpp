@@ -2,8 +2,6 @@
 
 #include "solvers/milp/milp_solver.hpp"
 
-#include <algorithm>
-
 namespace conelane {
 
 std::span<const MilpBackend> milp_backends() {

@@ -1,9 +1,6 @@
 #include "solvers/milp/strip_milp.hpp"
 
-#include "model/deadline.hpp"
 #include "model/strip_model.hpp"
-
-#include <algorithm>
 
 namespace conelane {
 namespace {

@@ -1,19 +1,7 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 
-#include "model/deadline.hpp"
 #include "solvers/core_entries.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
 
 namespace conelane {
 namespace {

@@ -5,9 +5,6 @@
 #include "model/search_certificate.hpp"
 #include "solvers/path_pair/path_pair_options.hpp"
 
-#include <limits>
-#include <memory>
-
 namespace conelane {
 
 /// Exact branch and bound on the problem itself: see solvers/path_pair/exact-search.md. The instance owns its

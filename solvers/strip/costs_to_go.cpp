@@ -2,8 +2,6 @@
 
 #include "model/deadline.hpp"
 
-#include <algorithm>
-
 namespace conelane {
 namespace {
 

@@ -2,14 +2,6 @@
 
 #include "model/strip_problem.hpp"
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <utility>
-#include <vector>
-
 namespace conelane {
 
 /// A rung, and the last edges of both boundaries as positions among those that they may have there.

@@ -3,11 +3,8 @@
 #include "model/deadline.hpp"
 #include "solvers/strip/costs_to_go.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <queue>
-#include <string>
 
 namespace conelane {
 namespace {

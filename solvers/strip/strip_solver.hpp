@@ -3,9 +3,7 @@
 #include "conelane/solve_report.hpp"
 #include "model/strip_problem.hpp"
 
-#include <cstddef>
 #include <functional>
-#include <vector>
 
 namespace conelane {
 

@@ -2,17 +2,12 @@
 // next call answers as if nothing had happened.
 
 #include "conelane/core_solvers.hpp"
-#include "conelane/detectors.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/detector_names.hpp"
 #include "tests/support/failing_allocations.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
-
-#include <new>
 
 namespace conelane {
 namespace {

@@ -1,12 +1,8 @@
 #include "graph_search/clc/clc_detector.hpp"
-#include "graph_search/clc/lane_beam.hpp"
-#include "graph_search/clc/path_pair_enumeration.hpp"
-#include "graph_search/clc/start_vertices.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/counted_allocations.hpp"
 #include "tests/support/no_time_limit.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

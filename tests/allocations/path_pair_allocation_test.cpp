@@ -1,10 +1,8 @@
 // path-pair keeps its workspace: the allocations of a solve do not grow with its nodes.
 
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/counted_allocations.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

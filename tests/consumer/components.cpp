@@ -1,8 +1,6 @@
 // The components: one scene, the same optimum by the exact search, by CBC and by rounding.
-#include <cmath>
 #include <iostream>
 
-#include <conelane/core_solvers.hpp>
 #include <conelane/milp_solvers.hpp>
 #include <conelane/relaxation_solvers.hpp>
 #include <conelane/solve_scene.hpp>

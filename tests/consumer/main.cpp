@@ -1,9 +1,7 @@
 // The calls that the README shows: the lane between six cones and a stray one, its centre line, and the plan
 // of a frame.
-#include <cmath>
 #include <iostream>
 
-#include <conelane/detectors.hpp>
 #include <conelane/planner.hpp>
 
 int main() {

@@ -1,6 +1,5 @@
 // Clocks of detectors and solvers: they read a clock that nobody sets, often enough to keep a limit.
 
-#include "conelane/core_solvers.hpp"
 #include "conelane/detectors.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/scene_set.hpp"
@@ -10,9 +9,6 @@
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/slowness.hpp"
-#include "tests/support/testing.hpp"
-
-#include <chrono>
 
 #include <malloc.h>
 

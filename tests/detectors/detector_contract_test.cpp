@@ -1,8 +1,6 @@
 // The contract of a detector (see LaneDetector, LaneAnswer and DetectorOptions), for every detector of the
 // library and of comparisons. A new detector is tested here as soon as it is listed.
 
-#include "conelane/detectors.hpp"
-#include "conelane/invalid_input.hpp"
 #include "experiments/methods/method.hpp"
 #include "tests/support/detector_names.hpp"
 #include "tests/support/metamorphic.hpp"
@@ -11,7 +9,6 @@
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/straight_lane.hpp"
-#include "tests/support/testing.hpp"
 
 #include <thread>
 

@@ -2,12 +2,10 @@
 // are read from a file or from its bytes.
 
 #include "conelane/detectors.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,12 +1,10 @@
 // Properties in the table of detectors: the courses that each has learned from, whether it closes lanes, what
 // it does with colors. They are compared with the detectors' answers.
 
-#include "conelane/detectors.hpp"
 #include "experiments/methods/method.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "model/doubled_cones.hpp"
 
-#include "conelane/detectors.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/counted_allocations.hpp"
@@ -10,7 +9,6 @@
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,13 +1,11 @@
 // Scenes and parameters at the limits of double: every solver answers, and none ends the program.
 
 #include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -5,8 +5,6 @@
 #include "evaluation/world/course.hpp"
 #include "tests/support/testing.hpp"
 
-#include <boost/random/uniform_real_distribution.hpp>
-
 namespace conelane {
 namespace {
 

@@ -6,12 +6,10 @@
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "evaluation/world/scene_generation.hpp"
-#include "model/geometry.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/recorded_tracks.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -2,13 +2,11 @@
 // car on a wrong lane.
 
 #include "conelane/detectors.hpp"
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -6,9 +6,6 @@
 #include "solvers/registry.hpp"
 #include "tests/support/testing.hpp"
 
-#include <cstdlib>
-#include <functional>
-
 #include <malloc.h>
 
 namespace conelane {

@@ -1,15 +1,10 @@
 // Transformed scenes have the same lane, for every detector of the library.
 
-#include "conelane/detectors.hpp"
 #include "detectors/recipe.hpp"
 #include "evaluation/formats/scene_set.hpp"
 #include "tests/support/detector_names.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/no_time_limit.hpp"
-#include "tests/support/testing.hpp"
-
-#include <tuple>
-#include <variant>
 
 namespace conelane {
 namespace {

@@ -1,13 +1,9 @@
 // parameter_fields prints the parameters of the library, a line each, with tabs between the fields: group,
 // key, default, lowest, highest, unit, description. tests/docs/reference_pages makes parameters.md of it.
 #include "conelane/rld_parameter_sets.hpp"
-#include "conelane/rld_parameters.hpp"
 #include "detectors/recipe.hpp"
 
 #include <cstdio>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace {
 

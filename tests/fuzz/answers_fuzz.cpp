@@ -1,9 +1,6 @@
 // Readers of answers of detectors and solvers: lanes, lanes from outside, the log of an unfinished run,
 // solutions, and the solution files of other solvers. What is read can be written and read again.
 
-#include "conelane/formulation.hpp"
-#include "conelane/lane_graph_problem.hpp"
-#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/program_solution.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "experiments/comparison/runner.hpp"
@@ -12,13 +9,7 @@
 #include "tests/fuzz/scratch_folder.hpp"
 #include "tests/support/six_cone_lane.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
 #include <sstream>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane::fuzz {
 namespace {

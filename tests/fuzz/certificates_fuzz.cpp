@@ -9,12 +9,6 @@
 #include "tests/fuzz/scratch_folder.hpp"
 #include "tests/support/six_cone_lane.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string_view>
-#include <vector>
-
 namespace conelane::fuzz {
 namespace {
 

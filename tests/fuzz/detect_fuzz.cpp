@@ -1,21 +1,11 @@
 // Every detector on scenes made of the bytes: an answer that keeps the contract of LaneDetector, soon after
 // the limit, and its centre line.
 
-#include "conelane/drivable_lane.hpp"
 #include "experiments/methods/method.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/fuzzed_scene.hpp"
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <ctime>
-#include <map>
-#include <memory>
-#include <set>
-#include <span>
-#include <string_view>
-#include <vector>
 
 namespace conelane::fuzz {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 #include <iostream>
-#include <string>
 #include <string_view>
 
 namespace conelane::fuzz {

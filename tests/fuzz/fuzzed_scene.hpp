@@ -3,14 +3,9 @@
 #include "conelane/rld_parameters.hpp"
 #include "conelane/scene.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <numbers>
 #include <set>
-#include <vector>
 
 #include <fuzzer/FuzzedDataProvider.h>
 

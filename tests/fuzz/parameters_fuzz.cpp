@@ -1,18 +1,10 @@
 // Readers of everything that tells a run what to do: RLD parameters, those of other detectors, the cards of
 // detectors, the record of a run, and the names of detectors from outside.
 
-#include "evaluation/formats/parameter_file.hpp"
-#include "evaluation/outside/outside_detector.hpp"
 #include "experiments/comparison/run_record.hpp"
-#include "experiments/methods/method.hpp"
 #include "learning/tuning/detector_tuning.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
 
 namespace conelane::fuzz {
 namespace {

@@ -5,12 +5,7 @@
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
-#include <cstddef>
-#include <cstdint>
 #include <sstream>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace conelane::fuzz {
 namespace {

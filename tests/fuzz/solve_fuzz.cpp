@@ -8,13 +8,6 @@
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/fuzzed_scene.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <vector>
-
 namespace conelane::fuzz {
 namespace {
 

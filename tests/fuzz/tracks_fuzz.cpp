@@ -4,12 +4,6 @@
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <vector>
-
 namespace conelane::fuzz {
 namespace {
 

@@ -4,11 +4,6 @@
 #include "evaluation/formats/weights_file.hpp"
 #include "tests/fuzz/expectations.hpp"
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-
 namespace conelane::fuzz {
 namespace {
 

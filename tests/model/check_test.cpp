@@ -3,7 +3,6 @@
 
 #include "conelane/check.hpp"
 
-#include "conelane/lane_graph_problem.hpp"
 #include "model/answer_verification.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"

@@ -4,7 +4,6 @@
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

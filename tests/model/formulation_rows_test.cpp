@@ -1,7 +1,6 @@
 // Rows of the two formulations that follow from other rows in a right program, and the names of columns: each
 // is compared with edges that are chosen by hand.
 
-#include "conelane/lane_graph_problem.hpp"
 #include "model/lane_graph_model.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"

@@ -3,10 +3,8 @@
 #include "model/lane_graph_model.hpp"
 
 #include "conelane/check.hpp"
-#include "conelane/lane_graph.hpp"
 #include "model/answer_verification.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

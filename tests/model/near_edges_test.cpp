@@ -2,9 +2,7 @@
 
 #include "model/near_edges.hpp"
 
-#include "conelane/lane_graph_problem.hpp"
 #include "tests/support/cones_at.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -6,7 +6,6 @@
 #include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

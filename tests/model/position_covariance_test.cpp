@@ -1,9 +1,6 @@
 // Covariances of the positions of cones: which are valid, and what they say along a direction.
 
-#include "conelane/invalid_input.hpp"
-#include "conelane/scene.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

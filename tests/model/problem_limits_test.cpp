@@ -1,12 +1,9 @@
 // Making a problem, and its program, within a deadline and a limit of memory.
 
 #include "conelane/invalid_input.hpp"
-#include "conelane/lane_graph_problem.hpp"
-#include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -2,8 +2,6 @@
 
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/recorded_tracks.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/text_tables.hpp"
 
 namespace conelane::experiments {

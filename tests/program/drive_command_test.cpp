@@ -1,10 +1,6 @@
 // `conelane drive` as a user or a script calls it.
 
 #include "tests/support/program_fixture.hpp"
-#include "tests/support/testing.hpp"
-
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 namespace conelane::experiments {
 namespace {

@@ -3,9 +3,6 @@
 #include "tests/support/planner_frames.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/recorded_tracks.hpp"
-#include "tests/support/testing.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {

@@ -5,18 +5,11 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/small_disk.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 #include <fcntl.h>
-#include <nlohmann/json.hpp>
 #include <sys/file.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {

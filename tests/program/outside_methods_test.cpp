@@ -4,14 +4,8 @@
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "tests/support/program_fixture.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 
-#include <chrono>
 #include <csignal>
-
-#include <nlohmann/json.hpp>
-#include <sys/wait.h>
 
 namespace conelane::experiments {
 namespace {

@@ -1,12 +1,7 @@
 // Scenes in, lanes out, scores of lanes.
 
-#include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {

@@ -1,14 +1,10 @@
 // Signals that end the program while it works.
 
 #include "tests/support/program_on_scenes.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 
-#include <chrono>
 #include <csignal>
 
 #include <fcntl.h>
-#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {

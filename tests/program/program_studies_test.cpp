@@ -1,11 +1,7 @@
 // Training, tuning and studies through the program.
 
-#include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
-#include "tests/support/testing.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {

@@ -4,8 +4,6 @@
 #include "evaluation/formats/atomic_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/small_disk.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 
 #include <csignal>
 

@@ -3,7 +3,6 @@
 
 #include "evaluation/formats/json_node.hpp"
 #include "tests/support/program_on_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

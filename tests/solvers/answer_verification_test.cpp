@@ -2,7 +2,6 @@
 
 #include "model/answer_verification.hpp"
 
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_solver.hpp"
 #include "tests/support/six_cone_lane.hpp"
 #include "tests/support/testing.hpp"

@@ -7,7 +7,6 @@
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/cones_at.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

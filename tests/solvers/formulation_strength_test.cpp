@@ -4,7 +4,6 @@
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,19 +1,14 @@
 // Learned costs in the problem: the values of the networks, of the right features, within their limits.
 
-#include "conelane/learned_costs.hpp"
+#include "tests/support/learned_costs.hpp"
 
-#include "conelane/check.hpp"
-#include "conelane/invalid_input.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "model/learned_features.hpp"
 #include "solvers/core_entries.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
-#include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

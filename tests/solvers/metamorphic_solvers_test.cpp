@@ -1,11 +1,9 @@
 // Transformed scenes have the same optimum, for every solver and every formulation that it uses.
 
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
-#include "tests/support/testing.hpp"
 
 #include <tuple>
 

@@ -9,7 +9,6 @@
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

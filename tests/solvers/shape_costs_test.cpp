@@ -3,13 +3,10 @@
 
 #include "model/shape_costs.hpp"
 
-#include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

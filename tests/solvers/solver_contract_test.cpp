@@ -1,18 +1,12 @@
 // What every exact RLD solver promises, for every solver of the registry and every formulation it uses.
 
-#include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
 #include "solvers/milp/milp_solver.hpp"
-#include "solvers/registry.hpp"
 #include "tests/support/agreement.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
-#include "tests/support/testing.hpp"
-
-#include <ostream>
 
 namespace conelane {
 namespace {

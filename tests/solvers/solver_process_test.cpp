@@ -1,15 +1,10 @@
 // Effects of a solve on its process: SIGINT is the program's, and no library's assertion ends the process.
 
-#include "conelane/lane_graph_problem.hpp"
 #include "model/formulation_parts.hpp"
 #include "solvers/milp/detail/own_process.hpp"
-#include "solvers/registry.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
-#include "tests/support/testing.hpp"
 
-#include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <new>
 #include <stdexcept>

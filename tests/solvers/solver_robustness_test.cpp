@@ -2,18 +2,13 @@
 // limits and failing backends.
 
 #include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
-#include "model/deadline.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-#include "solvers/registry.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
-#include "tests/support/testing.hpp"
 
-#include <ostream>
 #include <stdexcept>
 #include <thread>
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "conelane/scene.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane::tests {

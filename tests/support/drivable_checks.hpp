@@ -1,10 +1,7 @@
 #pragma once
 
-#include "conelane/drivable_lane.hpp"
-#include "model/geometry.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/drivable_courses.hpp"
-#include "tests/support/testing.hpp"
 
 #include <iterator>
 

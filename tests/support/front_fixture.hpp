@@ -1,6 +1,5 @@
 #pragma once
 
-#include "conelane/scene.hpp"
 #include "graph_search/front/front_cost.hpp"
 #include "tests/support/testing.hpp"
 

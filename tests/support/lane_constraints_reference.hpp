@@ -1,8 +1,6 @@
 #pragma once
 
 #include "graph_search/clc/lane_constraints.hpp"
-#include "graph_search/clc/lane_width.hpp"
-#include "model/geometry.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {

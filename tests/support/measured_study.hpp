@@ -2,10 +2,6 @@
 
 #include "experiments/studies/study.hpp"
 
-#include <memory>
-#include <stdexcept>
-#include <string>
-
 #include <CLI/CLI.hpp>
 
 namespace conelane::experiments {

@@ -1,11 +1,8 @@
 #pragma once
 
-#include "conelane/lane.hpp"
-#include "conelane/scene.hpp"
 #include "tests/support/testing.hpp"
 
 #include <bit>
-#include <ostream>
 
 namespace conelane::tests {
 

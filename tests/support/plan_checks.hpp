@@ -2,7 +2,6 @@
 
 #include "conelane/planner.hpp"
 #include "tests/support/drivable_checks.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 

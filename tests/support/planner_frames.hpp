@@ -1,16 +1,9 @@
 #pragma once
 
-#include "conelane/planner.hpp"
 #include "experiments/race/course.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <functional>
-#include <limits>
-#include <numbers>
 #include <random>
-#include <vector>
 
 namespace conelane::tests {
 

@@ -2,7 +2,6 @@
 
 #include "tests/support/file_test.hpp"
 #include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 
 #include <chrono>
 #include <thread>

@@ -2,7 +2,6 @@
 
 #include "evaluation/formats/lane_file.hpp"
 #include "tests/support/program_fixture.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "conelane/formulation.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/testing.hpp"
 

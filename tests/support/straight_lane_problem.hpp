@@ -1,7 +1,6 @@
 #pragma once
 
 #include "conelane/lane_graph_problem.hpp"
-#include "conelane/scene.hpp"
 
 namespace conelane::tests {
 

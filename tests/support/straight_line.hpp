@@ -2,8 +2,6 @@
 
 #include "conelane/drivable_lane.hpp"
 
-#include <cmath>
-
 namespace conelane::tests {
 
 /// An open lane straight on from `begin` along `heading_rad`, 1.75 m wide to either side, in steps of 0.5 m.

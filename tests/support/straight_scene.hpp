@@ -1,7 +1,6 @@
 #pragma once
 
 #include "evaluation/scoring/score.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane {

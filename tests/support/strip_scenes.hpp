@@ -3,9 +3,6 @@
 #include "model/strip_problem.hpp"
 #include "tests/support/random_scenes.hpp"
 
-#include <memory>
-#include <numbers>
-
 namespace conelane::tests {
 
 /// Weights at random, but metres of boundary that gain and turns that cost.

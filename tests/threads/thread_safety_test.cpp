@@ -1,15 +1,12 @@
 // What is in several threads at once finds what one thread alone finds; also with the thread sanitizer.
 
 #include "conelane/detectors.hpp"
-#include "conelane/lane_graph.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "solvers/core_entries.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane.hpp"
-#include "tests/support/testing.hpp"
 
 #include <thread>
 

@@ -3,7 +3,6 @@
 #include "model/deadline.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <coin/CbcEventHandler.hpp>
 #include <coin/CbcModel.hpp>

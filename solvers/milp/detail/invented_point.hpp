@@ -2,9 +2,6 @@
 
 #include "solvers/milp/milp_solver.hpp"
 
-#include <cstddef>
-#include <span>
-
 namespace conelane::detail {
 
 /// The rows of a program at a point: their activities and limits, all of one length.

@@ -1,8 +1,6 @@
 #include "solvers/milp/detail/osi_program.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include <coin/ClpSimplex.hpp>
 #include <coin/ClpSolve.hpp>

@@ -5,7 +5,6 @@
 
 #include <span>
 #include <stdexcept>
-#include <vector>
 
 #include <coin/CoinError.hpp>
 #include <coin/OsiClpSolverInterface.hpp>

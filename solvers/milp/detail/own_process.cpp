@@ -1,17 +1,11 @@
 #include "solvers/milp/detail/own_process.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <new>
-#include <optional>
-#include <span>
-#include <string>
 #include <system_error>
 
 #include <fcntl.h>

@@ -2,8 +2,6 @@
 
 #include "solvers/milp/milp_solver.hpp"
 
-#include <functional>
-
 namespace conelane::detail {
 
 /// Runs `work` in a copy of this process, for a library whose failed assertions end the process. If the copy

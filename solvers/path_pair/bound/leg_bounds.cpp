@@ -1,8 +1,6 @@
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <utility>
 
 namespace conelane::path_pair {
 namespace {

@@ -2,11 +2,6 @@
 
 #include "solvers/path_pair/graph/residual_graph.hpp"
 
-#include <algorithm>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace conelane::path_pair {
 
 /// Depth-first search over simple legs without incompatible edges, cheapest continuation first; pruned if

@@ -1,6 +1,5 @@
 #include "solvers/path_pair/bound/multipliers.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <numeric>
 

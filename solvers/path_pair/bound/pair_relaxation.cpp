@@ -1,7 +1,5 @@
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 
-#include <algorithm>
-
 namespace conelane::path_pair {
 
 void Decisions::reset(const ArcGraph& graph) {

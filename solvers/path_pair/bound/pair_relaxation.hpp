@@ -2,12 +2,8 @@
 
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/multipliers.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
 
 #include <array>
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

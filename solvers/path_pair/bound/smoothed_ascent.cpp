@@ -1,9 +1,5 @@
 #include "solvers/path_pair/bound/smoothed_ascent.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <span>
-
 namespace conelane::path_pair {
 namespace {
 

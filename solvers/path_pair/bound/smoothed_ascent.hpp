@@ -1,15 +1,7 @@
 #pragma once
 
-#include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/path_pair_options.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <array>
-#include <cstddef>
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -1,9 +1,5 @@
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
-
 namespace conelane::path_pair {
 
 bool intersect_with_union(std::uint64_t* target, const std::uint64_t* given, const std::uint64_t* own,

@@ -2,12 +2,6 @@
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <array>
-#include <cstdint>
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -1,8 +1,6 @@
 #include "solvers/path_pair/frontier/frontier_graph.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <utility>
 
 namespace conelane::path_pair {
 namespace {

@@ -1,19 +1,8 @@
 #pragma once
 
-#include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
 #include "solvers/path_pair/frontier/partner_bounds.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
-#include "solvers/path_pair/graph/edge_sets.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

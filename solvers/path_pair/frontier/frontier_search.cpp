@@ -1,10 +1,6 @@
 #include "solvers/path_pair/frontier/frontier_search.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
 #include <bit>
-#include <utility>
 
 namespace conelane::path_pair {
 namespace {

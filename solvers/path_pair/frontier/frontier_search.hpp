@@ -1,17 +1,7 @@
 #pragma once
 
-#include "solvers/path_pair/frontier/frontier_graph.hpp"
 #include "solvers/path_pair/frontier/onward_tables.hpp"
-#include "solvers/path_pair/graph/block_rows.hpp"
-#include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -1,8 +1,5 @@
 #include "solvers/path_pair/frontier/onward_tables.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
 #include <bit>
 
 namespace conelane::path_pair {

@@ -1,14 +1,6 @@
 #pragma once
 
 #include "solvers/path_pair/frontier/frontier_graph.hpp"
-#include "solvers/path_pair/graph/edge_sets.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

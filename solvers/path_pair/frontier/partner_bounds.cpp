@@ -1,7 +1,5 @@
 #include "solvers/path_pair/frontier/partner_bounds.hpp"
 
-#include <algorithm>
-
 namespace conelane::path_pair {
 namespace {
 

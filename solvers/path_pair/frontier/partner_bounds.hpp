@@ -1,11 +1,6 @@
 #pragma once
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -1,6 +1,5 @@
 #include "solvers/path_pair/graph/arc_graph.hpp"
 
-#include <algorithm>
 #include <bit>
 
 namespace conelane::path_pair {

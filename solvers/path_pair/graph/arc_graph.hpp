@@ -4,9 +4,6 @@
 #include "solvers/path_pair/graph/bit_matrix.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
-#include <span>
-#include <vector>
-
 namespace conelane::path_pair {
 
 /// A number of an arc, an edge, a cone or a frontier, as containers take it.

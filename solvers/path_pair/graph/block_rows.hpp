@@ -3,7 +3,6 @@
 #include "solvers/path_pair/search_clock.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <memory>
 #include <utility>
 #include <vector>

@@ -1,9 +1,6 @@
 #include "solvers/path_pair/graph/edge_sets.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
 #include <bit>
-#include <span>
 
 namespace conelane::path_pair {
 

@@ -1,12 +1,6 @@
 #pragma once
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -1,8 +1,5 @@
 #include "solvers/path_pair/primal/frontier_beam.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace conelane::path_pair {
 namespace {
 

@@ -1,7 +1,5 @@
 #include "solvers/path_pair/primal/incumbent.hpp"
 
-#include <algorithm>
-
 namespace conelane::path_pair {
 
 void Incumbent::reset(double cutoff, double tolerance) {

@@ -3,8 +3,6 @@
 #include "solvers/path_pair/graph/arc_graph.hpp"
 
 #include <array>
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

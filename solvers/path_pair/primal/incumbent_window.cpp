@@ -1,6 +1,5 @@
 #include "solvers/path_pair/primal/incumbent_window.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 namespace conelane::path_pair {

@@ -1,8 +1,6 @@
 #include "solvers/path_pair/primal/pair_beam.hpp"
 
-#include <algorithm>
 #include <tuple>
-#include <utility>
 
 namespace conelane::path_pair {
 namespace {

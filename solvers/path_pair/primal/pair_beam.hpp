@@ -1,15 +1,7 @@
 #pragma once
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

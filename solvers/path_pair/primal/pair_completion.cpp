@@ -1,7 +1,5 @@
 #include "solvers/path_pair/primal/pair_completion.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
 namespace conelane::path_pair {
 namespace {
 

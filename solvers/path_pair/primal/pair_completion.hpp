@@ -1,13 +1,7 @@
 #pragma once
 
-#include "solvers/path_pair/bound/leg_search.hpp"
-#include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
-
-#include <cstdint>
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -1,9 +1,5 @@
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
-
 namespace conelane::path_pair {
 
 void SecondLegBound::reset() {

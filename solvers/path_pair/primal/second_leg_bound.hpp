@@ -1,13 +1,7 @@
 #pragma once
 
-#include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/leg_search.hpp"
-#include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-
-#include <cstdint>
-#include <span>
-#include <vector>
 
 namespace conelane::path_pair {
 

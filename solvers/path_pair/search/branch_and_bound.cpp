@@ -1,11 +1,5 @@
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
-#include <memory>
-#include <utility>
-
 namespace conelane::path_pair {
 
 BranchAndBound::BranchAndBound(const ArcGraph& graph, const LegSystem& system, Incumbent& incumbent,

@@ -1,9 +1,5 @@
 #include "solvers/path_pair/search/brancher.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
-
 namespace conelane::path_pair {
 
 Branching Brancher::choose(const ResidualGraph& graph, const PairRelaxation& relaxation,

@@ -1,11 +1,8 @@
 #pragma once
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/path_pair_options.hpp"
 #include "solvers/path_pair/search/node.hpp"
-
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -1,9 +1,5 @@
 #include "solvers/path_pair/search/frontier_solve.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
-
 namespace conelane::path_pair {
 
 Verdict FrontierSolve::search_by_target(const ResidualGraph& graph, const TargetLimits& limits,

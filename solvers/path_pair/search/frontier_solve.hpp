@@ -1,21 +1,9 @@
 #pragma once
 
-#include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/frontier/dominated_edges.hpp"
-#include "solvers/path_pair/frontier/frontier_graph.hpp"
 #include "solvers/path_pair/frontier/frontier_search.hpp"
-#include "solvers/path_pair/frontier/onward_tables.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/path_pair_options.hpp"
 #include "solvers/path_pair/primal/frontier_beam.hpp"
-#include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/search/node.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <cstddef>
-#include <limits>
-#include <optional>
 
 namespace conelane::path_pair {
 

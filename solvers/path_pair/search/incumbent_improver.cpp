@@ -1,11 +1,5 @@
 #include "solvers/path_pair/search/incumbent_improver.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 namespace conelane::path_pair {
 
 IncumbentImprover::IncumbentImprover(const ArcGraph& graph, const LegSystem& system, Incumbent& incumbent,

@@ -1,19 +1,8 @@
 #pragma once
 
-#include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
-#include "solvers/path_pair/path_pair_options.hpp"
-#include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/incumbent_window.hpp"
 #include "solvers/path_pair/primal/pair_beam.hpp"
-#include "solvers/path_pair/search/node.hpp"
 #include "solvers/path_pair/search/node_ascent.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <vector>
 
 namespace conelane::path_pair {
 

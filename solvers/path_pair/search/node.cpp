@@ -1,6 +1,5 @@
 #include "solvers/path_pair/search/node.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <iterator>
 

@@ -1,12 +1,6 @@
 #pragma once
 
 #include "solvers/path_pair/bound/multipliers.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
-
-#include <cstddef>
-#include <memory>
-#include <utility>
-#include <vector>
 
 namespace conelane::path_pair {
 

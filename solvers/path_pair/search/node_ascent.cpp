@@ -1,11 +1,5 @@
 #include "solvers/path_pair/search/node_ascent.hpp"
 
-#include "solvers/path_pair/graph/arc_graph.hpp"
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 namespace conelane::path_pair {
 
 void MultiplierStages::round(Multipliers& multipliers) {

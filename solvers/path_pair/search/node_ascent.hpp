@@ -1,21 +1,8 @@
 #pragma once
 
-#include "solvers/path_pair/bound/multipliers.hpp"
-#include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/bound/smoothed_ascent.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/path_pair_options.hpp"
-#include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
-#include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "solvers/path_pair/search/frontier_solve.hpp"
-#include "solvers/path_pair/search/node.hpp"
-#include "solvers/path_pair/search_clock.hpp"
-
-#include <cstddef>
-#include <cstdint>
-#include <utility>
-#include <vector>
 
 namespace conelane::path_pair {
 

@@ -2,10 +2,8 @@
 
 #include "detectors/drivable/drivable_answers.hpp"
 
-#include "conelane/drivable_lane.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/no_time_limit.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

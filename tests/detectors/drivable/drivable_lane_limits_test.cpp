@@ -1,9 +1,7 @@
 // Limits of a centre line: too narrow places, corners that it would cut, and lanes that turn back.
 
 #include "conelane/drivable_lane.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,11 +1,4 @@
-#include "conelane/drivable_lane.hpp"
-#include "model/geometry.hpp"
-#include "tests/support/boundary_checks.hpp"
 #include "tests/support/drivable_checks.hpp"
-#include "tests/support/drivable_courses.hpp"
-#include "tests/support/testing.hpp"
-
-#include <random>
 
 namespace conelane::tests {
 namespace {

@@ -1,11 +1,5 @@
-#include "conelane/drivable_lane.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/support/drivable_checks.hpp"
-#include "tests/support/drivable_courses.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
-
-#include <random>
 
 namespace conelane::tests {
 namespace {

@@ -1,9 +1,5 @@
-#include "conelane/drivable_lane.hpp"
 
-#include "model/geometry.hpp"
 #include "tests/support/drivable_checks.hpp"
-#include "tests/support/drivable_courses.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::tests {
 namespace {

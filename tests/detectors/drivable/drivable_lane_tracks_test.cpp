@@ -1,11 +1,7 @@
-#include "conelane/drivable_lane.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "evaluation/world/scene_generation.hpp"
-#include "model/geometry.hpp"
 #include "tests/support/drivable_checks.hpp"
-#include "tests/support/drivable_courses.hpp"
 #include "tests/support/recorded_tracks.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::tests {
 namespace {

@@ -4,9 +4,6 @@
 
 #include "tests/support/testing.hpp"
 
-#include <cmath>
-#include <numbers>
-
 namespace conelane {
 namespace {
 

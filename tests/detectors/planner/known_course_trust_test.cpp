@@ -1,15 +1,10 @@
 // After a lap the course is knowledge: trusted beyond the view until what is seen contradicts it.
 
-#include "conelane/planner.hpp"
 #include "detectors/planner/lane_stretch.hpp"
 #include "detectors/planner/rigid_shift.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/plan_checks.hpp"
 #include "tests/support/planner_frames.hpp"
-#include "tests/support/testing.hpp"
-
-#include <random>
-#include <set>
 
 namespace conelane {
 namespace {

@@ -5,10 +5,7 @@
 
 #include "conelane/planner.hpp"
 
-#include <cmath>
-#include <numbers>
 #include <random>
-#include <vector>
 
 namespace conelane::known_event {
 

@@ -1,13 +1,9 @@
 // The registration of a known course: compared with a search of the test's own over all poses, with false
 // positives, and without a course.
 
-#include "detectors/planner/known_registration.hpp"
-
 #include "detectors/planner/known_gates.hpp"
 #include "tests/detectors/planner/known_event.hpp"
 #include "tests/support/testing.hpp"
-
-#include <random>
 
 namespace conelane {
 namespace {

@@ -5,7 +5,6 @@
 #include "detectors/planner/lane_stretch.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/straight_line.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

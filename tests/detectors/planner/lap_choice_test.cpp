@@ -1,7 +1,6 @@
 // The choice between the lane driven so far and one that jumps away from it; noise from frame to frame;
 // frames without progress of time.
 
-#include "conelane/planner.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
 #include "detectors/planner/planners.hpp"

@@ -2,12 +2,10 @@
 // detector is tested here as soon as it is listed.
 
 #include "conelane/invalid_input.hpp"
-#include "conelane/planner.hpp"
 #include "tests/support/detector_names.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/plan_checks.hpp"
 #include "tests/support/planner_frames.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

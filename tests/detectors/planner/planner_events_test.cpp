@@ -1,17 +1,11 @@
 // Whole events with the planner: laps, phases, the last line, the stop; generated events and recorded runs.
 
 #include "conelane/invalid_input.hpp"
-#include "conelane/planner.hpp"
 #include "evaluation/formats/frame_file.hpp"
-#include "evaluation/formats/track_spec.hpp"
-#include "model/geometry.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/plan_checks.hpp"
 #include "tests/support/planner_frames.hpp"
 #include "tests/support/recorded_tracks.hpp"
-#include "tests/support/testing.hpp"
-
-#include <random>
 
 namespace conelane {
 namespace {

@@ -8,7 +8,6 @@
 #include "solvers/milp/milp_solver.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/small_program.hpp"
-#include "tests/support/testing.hpp"
 
 #include <unistd.h>
 

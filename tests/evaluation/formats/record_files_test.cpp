@@ -1,6 +1,4 @@
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/refusal.hpp"

@@ -1,6 +1,5 @@
 // What readers of files say of faulty ones: refused_files.txt has texts and messages.
 
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/frame_file.hpp"
 #include "evaluation/formats/lane_file.hpp"
 #include "evaluation/formats/program_solution.hpp"
@@ -9,7 +8,6 @@
 #include "evaluation/formats/track_spec.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/small_program.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/text_tables.hpp"
 
 namespace conelane {

@@ -1,8 +1,6 @@
 // Runs of ft-fsd, from the log to the scenes.
 
 #include "evaluation/formats/frame_file.hpp"
-#include "evaluation/formats/track_spec.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/world/scene_generation.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/file_test.hpp"

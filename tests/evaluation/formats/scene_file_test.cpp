@@ -1,6 +1,5 @@
 #include "evaluation/formats/scene_file.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/refusal.hpp"
 

@@ -3,9 +3,7 @@
 #include "evaluation/formats/scene_set.hpp"
 
 #include "evaluation/formats/track_spec.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "tests/support/cones_at.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,8 +1,5 @@
-#include "evaluation/formats/track_spec.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/generated_tracks.hpp"
-#include "evaluation/world/track.hpp"
 #include "tests/support/boundary_checks.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"

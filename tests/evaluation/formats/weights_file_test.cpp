@@ -2,19 +2,13 @@
 
 #include "evaluation/formats/weights_file.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "conelane/rld_parameters.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "detectors/recipe.hpp"
 #include "evaluation/formats/parameter_file.hpp"
-#include "graph_search/front/front_features.hpp"
-#include "graph_search/weights/weight_files.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/text_tables.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,5 @@
 // Courses as people write them: columns, separators, names of colors; cones that cannot belong to a boundary.
 
-#include "evaluation/formats/track_spec.hpp"
-#include "evaluation/world/track.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/recorded_tracks.hpp"
 

@@ -5,17 +5,11 @@
 
 #include "tests/evaluation/outside/process_faults.hpp"
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <map>
-#include <string>
-#include <vector>
 
 #include <conelane/detectors.hpp>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace {
 

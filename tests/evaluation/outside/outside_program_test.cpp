@@ -3,12 +3,9 @@
 
 #include "evaluation/outside/outside_program.hpp"
 
-#include "evaluation/formats/scene_set.hpp"
-#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/comparison/results.hpp"
-#include "experiments/methods/method.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/random_scenes.hpp"
 

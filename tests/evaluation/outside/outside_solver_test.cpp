@@ -5,7 +5,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "model/connecting_flow.hpp"
-#include "model/deadline.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/file_test.hpp"

@@ -6,19 +6,14 @@
 // At the K-th program it commits the fault, but only if the file MARKER does not exist, which it then
 // creates. The marker "always" never exists. It writes its input to the file named by SOLVER_LOG.
 
-#include "model/binary_program.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "tests/evaluation/outside/process_faults.hpp"
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <list>
 #include <map>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,6 @@
 // Programs and lane graphs recomputed in rational arithmetic: small ones by hand, solved scenes, forged ones.
 
 #include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/proofs/exact_arithmetic.hpp"
 #include "model/lane_graph_model.hpp"
@@ -9,9 +8,6 @@
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
-#include "tests/support/testing.hpp"
-
-#include <stdexcept>
 
 namespace conelane {
 namespace {

@@ -3,7 +3,6 @@
 #include "evaluation/proofs/lane_graph_search.hpp"
 
 #include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/proofs/answer_check.hpp"
 #include "solvers/core_entries.hpp"
@@ -11,7 +10,6 @@
 #include "tests/support/cones_at.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_scene.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

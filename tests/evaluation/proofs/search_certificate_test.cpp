@@ -2,7 +2,6 @@
 // that the verifier rejects.
 
 #include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "evaluation/formats/solution_file.hpp"
 #include "evaluation/proofs/certificate_verifier.hpp"
 #include "evaluation/proofs/exact_arithmetic.hpp"

@@ -2,9 +2,6 @@
 
 #include "solvers/strip/strip_solver.hpp"
 #include "tests/support/strip_scenes.hpp"
-#include "tests/support/testing.hpp"
-
-#include <algorithm>
 
 namespace conelane::tests {
 namespace {

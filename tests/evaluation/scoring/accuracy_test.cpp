@@ -1,6 +1,4 @@
-#include "evaluation/scoring/score.hpp"
 #include "tests/support/straight_scene.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,8 +1,6 @@
 #include "evaluation/scoring/lane_failure.hpp"
 
-#include "evaluation/scoring/score.hpp"
 #include "tests/support/straight_scene.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

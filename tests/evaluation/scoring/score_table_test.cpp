@@ -4,8 +4,6 @@
 #include "evaluation/scoring/published_figures.hpp"
 #include "tests/support/testing.hpp"
 
-#include <nlohmann/json.hpp>
-
 namespace conelane {
 namespace {
 

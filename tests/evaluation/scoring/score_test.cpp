@@ -1,9 +1,6 @@
-#include "evaluation/scoring/score.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/world/annotated_scene.hpp"
 #include "tests/support/straight_scene.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

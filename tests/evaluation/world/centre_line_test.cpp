@@ -4,7 +4,6 @@
 #include "evaluation/world/generated_tracks.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/recorded_tracks.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

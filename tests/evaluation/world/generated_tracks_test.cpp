@@ -2,7 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "tests/support/boundary_checks.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,7 +1,4 @@
-#include "conelane/invalid_input.hpp"
-#include "evaluation/world/scene_generation.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
 
 namespace conelane {

@@ -1,5 +1,3 @@
-#include "evaluation/world/scene_generation.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
 
 namespace conelane {

@@ -1,7 +1,5 @@
 // Disturbances of a scene: false positives, noise, wrong colors, confidences.
 
-#include "evaluation/world/scene_generation.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
 
 namespace conelane {

@@ -1,10 +1,6 @@
 // Poses, ids, bytes and options of generated scenes.
 
-#include "evaluation/world/scene_generation.hpp"
-
-#include "conelane/invalid_input.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
 
 namespace conelane {

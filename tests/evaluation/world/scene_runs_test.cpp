@@ -1,7 +1,5 @@
 // What the car sees of a track, and the ground truth in it.
 
-#include "evaluation/world/scene_generation.hpp"
-#include "tests/support/testing.hpp"
 #include "tests/support/toy_track_scenes.hpp"
 
 namespace conelane {

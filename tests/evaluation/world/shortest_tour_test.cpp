@@ -1,7 +1,6 @@
 #include "evaluation/world/shortest_tour.hpp"
 
 #include "tests/support/boundary_checks.hpp"
-#include "tests/support/testing.hpp"
 
 #include <numeric>
 

@@ -2,11 +2,9 @@
 
 #include "evaluation/proofs/answer_check.hpp"
 
-#include "evaluation/formats/scene_set.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/straight_scene.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

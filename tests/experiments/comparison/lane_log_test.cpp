@@ -1,6 +1,5 @@
 #include "experiments/comparison/runner.hpp"
 #include "tests/support/file_test.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

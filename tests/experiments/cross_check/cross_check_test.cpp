@@ -2,15 +2,12 @@
 
 #include "experiments/cross_check/cross_check.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/formats/scene_file.hpp"
-#include "evaluation/input_error.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

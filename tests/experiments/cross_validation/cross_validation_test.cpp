@@ -1,17 +1,9 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
-#include "conelane/learned_costs.hpp"
 #include "evaluation/formats/file_text.hpp"
-#include "evaluation/formats/lane_file.hpp"
-#include "evaluation/formats/parameter_file.hpp"
-#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/formats/weights_file.hpp"
-#include "experiments/methods/method.hpp"
 #include "learning/tuning/rld_tuning.hpp"
 #include "tests/support/program_fixture.hpp"
-#include "tests/support/testing.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {

@@ -6,8 +6,6 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/slowness.hpp"
-#include "tests/support/test_paths.hpp"
-#include "tests/support/testing.hpp"
 
 #include <zlib.h>
 

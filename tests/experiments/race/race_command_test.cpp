@@ -4,9 +4,6 @@
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/program_fixture.hpp"
-#include "tests/support/testing.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {

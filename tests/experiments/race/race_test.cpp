@@ -1,13 +1,8 @@
 // The car, its controller and the world of a race, and whole races with the true centre line.
 
-#include "experiments/race/race.hpp"
-
 #include "conelane/invalid_input.hpp"
-#include "evaluation/formats/track_spec.hpp"
-#include "evaluation/world/scene_generation.hpp"
 #include "experiments/race/drivers.hpp"
 #include "tests/support/recorded_tracks.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -1,11 +1,6 @@
 // Acceleration and skidpad in the variants that events may set up, and whole races with the planner on them.
 
-#include "conelane/planner.hpp"
-#include "evaluation/world/scene_generation.hpp"
-#include "evaluation/world/track.hpp"
-#include "experiments/race/course.hpp"
 #include "experiments/race/drivers.hpp"
-#include "experiments/race/race.hpp"
 #include "tests/support/testing.hpp"
 
 namespace conelane::experiments {

@@ -2,10 +2,8 @@
 
 #include "experiments/studies/backend_measures.hpp"
 
-#include "evaluation/formats/scene_set.hpp"
 #include "experiments/studies/machine.hpp"
 #include "tests/support/straight_scene.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

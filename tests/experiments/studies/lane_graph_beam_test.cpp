@@ -2,12 +2,10 @@
 
 #include "experiments/studies/lane_graph_beam.hpp"
 
-#include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

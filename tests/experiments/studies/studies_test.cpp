@@ -1,14 +1,10 @@
 // Studies: what is listed, and the aggregations of solves under one objective.
 
-#include "conelane/invalid_input.hpp"
 #include "conelane/relaxation_solvers.hpp"
-#include "evaluation/formats/scene_set.hpp"
 #include "experiments/studies/solve_rows.hpp"
-#include "experiments/studies/study.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/measured_study.hpp"
 #include "tests/support/straight_scene.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -1,9 +1,7 @@
-#include "conelane/invalid_input.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/shared/search_graph.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

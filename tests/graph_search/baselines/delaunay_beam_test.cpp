@@ -1,9 +1,7 @@
-#include "conelane/invalid_input.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

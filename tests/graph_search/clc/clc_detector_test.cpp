@@ -1,8 +1,5 @@
 #include "graph_search/clc/clc_detector.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "graph_search/clc/lane_features.hpp"
-#include "graph_search/clc/start_vertices.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
 #include "tests/support/metamorphic.hpp"
@@ -11,7 +8,6 @@
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/straight_lane.hpp"
-#include "tests/support/testing.hpp"
 
 #include <unordered_map>
 

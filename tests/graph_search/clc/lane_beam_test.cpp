@@ -1,12 +1,9 @@
 #include "graph_search/clc/lane_beam.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,9 +1,7 @@
-#include "graph_search/clc/lane_constraints.hpp"
 
 #include "graph_search/clc/deciders.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
-#include "tests/support/testing.hpp"
 
 #include <boost/random/uniform_01.hpp>
 

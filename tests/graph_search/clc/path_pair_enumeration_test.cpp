@@ -1,8 +1,6 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 
-#include "model/deadline.hpp"
 #include "tests/support/lane_constraints_reference.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,12 +1,8 @@
-#include "graph_search/clc/ranking.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "graph_search/clc/clc_detector.hpp"
-#include "graph_search/clc/path_pair_enumeration.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/straight_lane.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

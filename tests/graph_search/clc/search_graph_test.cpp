@@ -1,13 +1,8 @@
 // Where a lane may start and go on: the search graph, the deciders, start pairs, cones around a step.
 
-#include "graph_search/shared/search_graph.hpp"
-
-#include "graph_search/clc/deciders.hpp"
-#include "graph_search/clc/neighbourhood.hpp"
 #include "graph_search/clc/start_vertices.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/metamorphic.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,11 +1,9 @@
 // What `front` makes of covariances: nothing where they are 0, wider rules and shorter trust elsewhere.
 
 #include "graph_search/front/front_detector.hpp"
-#include "graph_search/front/front_state.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

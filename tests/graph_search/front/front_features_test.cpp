@@ -1,11 +1,7 @@
 // The inputs of the networks of `front` for a lane that grows, by hand; scores depend only on these inputs.
 
-#include "graph_search/front/front_features.hpp"
-
-#include "graph_search/front/front_cost.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/front_fixture.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

@@ -1,14 +1,10 @@
 // The search of `front`: how a lane is built, and that the beam finds the best of all lanes.
 
-#include "graph_search/front/front_search.hpp"
-
-#include "conelane/invalid_input.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane {
 namespace {

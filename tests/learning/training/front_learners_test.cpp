@@ -1,11 +1,9 @@
 // The derivatives by which the cost and the judge of `front` learn.
 
 #include "evaluation/world/generated_tracks.hpp"
-#include "graph_search/front/front_features.hpp"
 #include "learning/training/front_learner.hpp"
 #include "learning/training/front_scenes.hpp"
 #include "tests/support/front_fixture.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::learning {
 namespace {

@@ -2,14 +2,11 @@
 
 #include "learning/training/front_training.hpp"
 
-#include "conelane/invalid_input.hpp"
-#include "evaluation/input_error.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::learning {
 namespace {

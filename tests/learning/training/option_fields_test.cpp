@@ -1,14 +1,9 @@
 // The tables of options: their ranges, and that each training is described by them.
 
-#include "conelane/invalid_input.hpp"
 #include "learning/training/clc_training.hpp"
 #include "learning/training/front_training.hpp"
-#include "learning/training/rank_net_training.hpp"
 #include "learning/training/rld_training.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
-
-#include <nlohmann/json.hpp>
 
 namespace conelane::learning {
 namespace {

@@ -1,16 +1,11 @@
-#include "learning/training/rank_net_training.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "evaluation/formats/track_spec.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "learning/training/clc_training.hpp"
-#include "learning/training/training_loop.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 #include <boost/random/uniform_01.hpp>
-#include <nlohmann/json.hpp>
 
 namespace conelane::learning {
 namespace {

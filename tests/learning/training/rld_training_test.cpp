@@ -6,7 +6,6 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
-#include "tests/support/testing.hpp"
 
 #include <iterator>
 

@@ -1,7 +1,5 @@
-#include "conelane/invalid_input.hpp"
 #include "learning/training/clc_training.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::learning {
 namespace {

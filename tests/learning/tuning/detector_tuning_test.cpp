@@ -2,12 +2,10 @@
 
 #include "learning/tuning/detector_tuning.hpp"
 
-#include "evaluation/input_error.hpp"
 #include "experiments/methods/method.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::learning {
 namespace {

@@ -1,7 +1,6 @@
 // Contract of tuning: ranges around sensible parameters, and a fit that keeps the best point.
 
 #include "conelane/rld_parameter_sets.hpp"
-#include "evaluation/input_error.hpp"
 #include "learning/tuning/rld_tuning.hpp"
 #include "tests/support/testing.hpp"
 

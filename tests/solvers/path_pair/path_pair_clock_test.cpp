@@ -1,13 +1,8 @@
 // The work of path-pair before its first bound takes milliseconds in a dense scene. So the clock is checked
 // throughout, and the time may end at any check.
 
-#include "conelane/lane_graph_problem.hpp"
-#include "conelane/scene.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-#include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/near_to_far.hpp"
 #include "tests/support/testing.hpp"

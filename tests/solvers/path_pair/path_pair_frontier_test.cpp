@@ -1,27 +1,15 @@
 // No lane graph passes a frontier that path-pair drops; the search on the frontiers finds the best one.
 
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
-#include "solvers/path_pair/bound/leg_bounds.hpp"
-#include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/frontier/dominated_edges.hpp"
-#include "solvers/path_pair/frontier/frontier_graph.hpp"
 #include "solvers/path_pair/frontier/frontier_search.hpp"
-#include "solvers/path_pair/frontier/onward_tables.hpp"
-#include "solvers/path_pair/frontier/partner_bounds.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/primal/frontier_beam.hpp"
-#include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
-#include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/cones_at.hpp"
 #include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {

@@ -1,9 +1,6 @@
 // The parts of path-pair's search that need no scene: its clock, queue of nodes, and multipliers.
 
-#include "solvers/path_pair/bound/multipliers.hpp"
-#include "solvers/path_pair/search/node.hpp"
 #include "solvers/path_pair/search/node_ascent.hpp"
-#include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/testing.hpp"
 

@@ -1,8 +1,5 @@
 // path-pair as a whole: the optima of other solvers, and true answers for any deadline and mode.
 
-#include "conelane/bound_certificate.hpp"
-#include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -14,7 +11,6 @@
 #include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {

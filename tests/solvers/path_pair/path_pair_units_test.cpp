@@ -1,12 +1,7 @@
 // The units of path-pair: valid bounds, valid cliques, and the same legs as brute force finds.
 
-#include "conelane/lane_graph_problem.hpp"
-#include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/leg_search.hpp"
-#include "solvers/path_pair/bound/multipliers.hpp"
-#include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/bound/smoothed_ascent.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
@@ -14,7 +9,6 @@
 #include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {

@@ -1,21 +1,13 @@
 // Where path-pair looks for incumbents in a large graph: windows around a lane graph, and a beam over pairs.
 
 #include "conelane/check.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/core_entries.hpp"
-#include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-#include "solvers/path_pair/primal/incumbent.hpp"
-#include "solvers/path_pair/primal/incumbent_window.hpp"
-#include "solvers/path_pair/primal/pair_beam.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
-#include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/near_to_far.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
-#include "tests/support/testing.hpp"
 
 namespace conelane::path_pair {
 namespace {

@@ -1,17 +1,8 @@
-#include "conelane/core_solvers.hpp"
-#include "model/deadline.hpp"
 #include "model/strip_model.hpp"
 #include "solvers/milp/strip_milp.hpp"
 #include "solvers/registry.hpp"
-#include "solvers/strip/strip_solver.hpp"
 #include "tests/support/slowness.hpp"
 #include "tests/support/strip_scenes.hpp"
-#include "tests/support/testing.hpp"
-
-#include <algorithm>
-#include <cstdlib>
-#include <map>
-#include <set>
 
 #include <fmt/format.h>
 
