@@ -16,7 +16,8 @@ constexpr std::size_t kWorkPerFrontier = 200;  ///< in steps of the clock
 /// nothing.
 constexpr std::size_t kReservedFrontiers = std::size_t{1} << 18U;
 constexpr std::size_t kMaxFirstFrontiers = 1'000'000;
-constexpr int kFewFrontiers = 3000;  ///< With more, the bounds of partners are worth their time.
+constexpr int kFewFrontiers = 3000;    ///< With more, the bounds of partners are worth their time.
+constexpr int kMaxPartnerArcs = 4000;  ///< of their tables, which grow with arcs and ends
 
 }  // namespace
 
@@ -238,8 +239,8 @@ bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
     const double waiting = here.ended ? 0.0 : leg_onward_[to_index(other)][to_index(here.waiting)];
     if (!(forward + leg_onward[to_index(here.moving)] + waiting < limit)) return true;
     if (now_.end[to_index(f)] == 0) {
-        if (!has_partners_ && size() > kFewFrontiers && relaxation_.symmetric() &&
-            relaxation_.system().ends_are_partners) {
+        if (!has_partners_ && size() > kFewFrontiers && residual_->size() <= kMaxPartnerArcs &&
+            relaxation_.symmetric() && relaxation_.system().ends_are_partners) {
             if (!partners_.find(relaxation_, *residual_, limit, clock_)) return false;
             has_partners_ = true;
         }

@@ -1,5 +1,7 @@
 #include "solvers/path_pair/frontier/partner_bounds.hpp"
 
+#include "solvers/path_pair/graph/block_rows.hpp"
+
 namespace conelane::path_pair {
 namespace {
 
@@ -35,7 +37,7 @@ void PartnerBounds::find_ends(const PairRelaxation& relaxation, const ResidualGr
 bool PartnerBounds::find_walks(const PairRelaxation& relaxation, const ResidualGraph& residual,
                                SearchClock& clock) {
     const std::size_t ends = ends_.size();
-    to_end_.assign(residual.arc.size() * ends, kNoWay);
+    if (!path_pair::fill(to_end_, residual.arc.size() * ends, kNoWay, clock)) return false;
     changed_.assign(residual.arc.size(), 0);
     for (int a = 0; a < residual.size(); ++a) {
         const int end = end_of_arc_[to_index(a)];
@@ -70,7 +72,7 @@ bool PartnerBounds::find_walks(const PairRelaxation& relaxation, const ResidualG
 bool PartnerBounds::find_partners(const PairRelaxation& relaxation, const ResidualGraph& residual,
                                   SearchClock& clock) {
     const std::size_t ends = ends_.size();
-    to_partner_.assign(residual.arc.size() * ends, kNoWay);
+    if (!path_pair::fill(to_partner_, residual.arc.size() * ends, kNoWay, clock)) return false;
     for (std::size_t e = 0; e < ends; ++e) {
         for (std::size_t k = 0; k < ends; ++k) {
             if (!relaxation.ends_fit(ends_[e], ends_[k])) continue;
