@@ -47,6 +47,8 @@ bool PartnerBounds::find_walks(const PairRelaxation& relaxation, const ResidualG
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int a = residual.size(); a-- > 0;) {
+            // Where no leg comes, cycles may gain.
+            if (relaxation.forward(0)[to_index(a)] == kUnreachable) continue;
             double* const here = &to_end_[to_index(a) * ends];
             for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p) {
                 const int next = residual.out_arc[to_index(p)];
