@@ -26,9 +26,7 @@ _OF_SOURCE = {
         "rld-context": "Looks at 24 cones and answers for the 12 nearest.",
         "rld-learned": "rld-pair with learned costs of edges, turns and ends; steps over missed cones."},
     "baseline": {"delaunay-beam": "Beam search for a centre line through the Delaunay triangulation of the cones, as the team AMZ "
-                                  "drove with."},
-    "baseline, after Tanzmeister et al.": {
-        "astar-lane": "A path of bounded curvature between the cones by A*; the boundaries are read off it."}}
+                                  "drove with."}}
 
 
 def described(results, name):
