@@ -53,15 +53,17 @@ class StripSolver::Search {
         add_starts();
         const std::size_t wanted = std::max<std::size_t>(1, options_->lanes);
         std::size_t popped = 0;
+        std::size_t most = options_->max_labels;
         while (!open_.empty()) {
             const auto [estimate, negated] = open_.top();
             const std::int32_t label = -negated;
             const double bound = lanes_.empty() ? estimate : lanes_.front().cost;
             if (!lanes_.empty() && estimate > lanes_.front().cost + options_->worst_of_lanes) break;
             if (popped++ % 64 == 0 && deadline.passed()) return stop(StopReason::time, report, bound);
-            if (labels_.size() > options_->max_labels) return stop(StopReason::iterations, report, bound);
+            if (labels_.size() > most) return stop(StopReason::iterations, report, bound);
             open_.pop();
             if (at(label).is_end) {
+                if (lanes_.empty()) most = std::min(most, labels_.size() + options_->labels_of_others);
                 if (add_lane(label) && lanes_.size() >= wanted) break;
                 continue;
             }
