@@ -12,8 +12,9 @@ namespace conelane {
 /// Where the first of some lanes, the answer, can be relied on. Each has the probability exp(-cost), divided
 /// by the sum over all of them: lanes that are not among them are impossible.
 struct StripTrust {
-    double confidence = 0.0;  ///< probability of the lanes that have its first 20 m; of a shorter lane, its own
-    double trusted_m = 0.0;   ///< mean length of both boundaries that nearly all lanes have, by probability
+    double confidence =
+        0.0;  ///< probability of the lanes that have its first 20 m; of a shorter lane, its own
+    double trusted_m = 0.0;  ///< mean length of both boundaries that nearly all lanes have, by probability
 };
 /// Precondition: there is a lane, and each is a strip of the problem.
 [[nodiscard]] StripTrust strip_trust(const StripProblem& problem, const Scene& scene,

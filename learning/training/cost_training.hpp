@@ -15,7 +15,9 @@ namespace conelane::learning {
 
 /// Calls `use` with the numbers of all networks, list by list. `costs`: PartNetworks.
 template <typename Costs, typename Use>
-requires requires(Costs& costs) { costs.networks; }
+requires requires(Costs& costs) {
+    costs.networks;
+}
 void for_each_block(Costs& costs, const Use& use) {
     for_each_costs_list(costs, [&](const std::string& /*key*/, auto& numbers) { use(std::span(numbers)); });
 }

@@ -15,9 +15,8 @@ void add_boundary(const StripFeatures& features, const std::vector<std::size_t>&
         const auto [i, j, k] = std::array{side[m - 2], side[m - 1], side[m]};
         const double bend =
             cross(features.at(j) - features.at(i), features.at(k) - features.at(j));  // to the left
-        add_gradient(costs.of(StripPart::turn),
-                     features.turn(i, j, k, is_left ? bend < 0.0 : bend > 0.0), factor,
-                     gradient.of(StripPart::turn));
+        add_gradient(costs.of(StripPart::turn), features.turn(i, j, k, is_left ? bend < 0.0 : bend > 0.0),
+                     factor, gradient.of(StripPart::turn));
     }
     add_gradient(costs.of(StripPart::end), features.end(side[side.size() - 2], side.back()), factor,
                  gradient.of(StripPart::end));
