@@ -4,7 +4,6 @@
 #include "detectors/drivable/drivable_answers.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "detectors/strip_detector.hpp"
-#include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
@@ -66,10 +65,6 @@ constexpr std::string_view kShapeCourses[]{"fsd_1", "fsd_2", "fsd_4", "fsd_5", "
 /// Courses named by the records of the parameters.
 constexpr std::string_view kDelaunayBeamCourses[]{
     "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
-/// The same, and the courses in view when hitting a cone got a cost.
-constexpr std::array<std::string_view, 12> kAstarLaneCourses{
-    {"fsd_1", "fsd_2", "fsd_4", "fsd_5", "fsd_6", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19",
-     "pacsim_FSO20", "eufs_small_track", "eufs_peanut"}};
 
 constexpr DetectorRecipe kRecipes[]{
     {{"front",
@@ -126,11 +121,6 @@ constexpr DetectorRecipe kRecipes[]{
       ClosedLanes::never, ColorUse::used},
      LearnedFrom({}, kDelaunayBeamCourses),
      tuned<DelaunayBeamParameters, delaunay_beam_fields, make_delaunay_beam_detector>()},
-    {{"astar-lane",
-      "Tanzmeister et al.: a path of bounded curvature between cones by A*, boundaries read off it",
-      ClosedLanes::never, ColorUse::ignored},
-     LearnedFrom({}, kAstarLaneCourses),
-     tuned<AstarLaneParameters, astar_lane_fields, make_astar_lane_detector>()},
 };
 
 /// The courses that the record of a weight file names.

@@ -111,8 +111,9 @@ struct Removed {
     std::string_view word;     ///< or a part of a list
     std::string_view instead;
 };
-constexpr std::array<Removed, 11> kRemoved{{
+constexpr std::array<Removed, 12> kRemoved{{
     {"", "rld-shape-context", "rld-context with --params shape"},
+    {"", "astar-lane", "clc"},
     {"", "clc-no-beam", "clc"},
     {"", "clc-longest", "clc"},
     {"", "clc-delaunay", "clc-paper"},

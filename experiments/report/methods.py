@@ -27,9 +27,7 @@ _OF_SOURCE = {
         "rld-learned": "rld-pair with learned costs of edges, turns and ends; steps over missed cones.",
         "rld-strip": "The cheapest strip of triangles between two boundaries, by learned costs of both together, with proof."},
     "baseline": {"delaunay-beam": "Beam search for a centre line through the Delaunay triangulation of the cones, as the team AMZ "
-                                  "drove with."},
-    "baseline, after Tanzmeister et al.": {
-        "astar-lane": "A path of bounded curvature between the cones by A*; the boundaries are read off it."}}
+                                  "drove with."}}
 
 
 def described(results, name):

@@ -27,7 +27,6 @@ METHODS = {
     "rld-pair": "`rld-pair`",
     "rld-cbc": "`rld-cbc`, 12 cones",
     "delaunay-beam": "`delaunay-beam`",
-    "astar-lane": "`astar-lane`",
     "ft-fsd-path-planning": "ft-fsd-path-planning, without colours",
 }
 # The run in which a method sees colours, for each method that can use them.

@@ -5,9 +5,12 @@
     tables.py check               whether the pages say what the files in docs/benchmarks/ say; exit code 1 if not
 
 KIND is held_out, shipped, solvers or engines; experiments/tables/KIND makes the runs. The KIND reproduce is about the whole run of experiments/reproduce.
-A table stands between `<!-- table NAME -->` and `<!-- end of table -->`. All figures are to be of one commit, that of the whole run.
+A table stands between `<!-- table NAME -->` and `<!-- end of table -->`. A number in a sentence names its cell, `92.4<!--usable:front:8-->`: table,
+beginning of the row, number of the column (or the `min` or `max` of the row), and with `:2` the second number of the cell. It keeps its decimals. All
+figures are to be of one commit, that of the whole run.
 """
 
+import glob
 import json
 import os
 import re
@@ -22,11 +25,12 @@ from cells import InputError, read_json, table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STORED = os.path.join(ROOT, "docs", "benchmarks")
-PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/rld.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
+PAGES = ["README.md", *sorted(os.path.relpath(page, ROOT) for page in glob.glob(os.path.join(ROOT, "docs", "**", "*.md"), recursive=True))]
 JUDGE = os.path.join(STORED, "course_judge.json")  # the record of a judge that is not in the project any more
 KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "engines": engines, "reproduce": reproduce}
 
 BLOCK = re.compile(r"(<!-- table (?P<name>[^>]*?) -->\n).*?(<!-- end of table -->)", flags=re.S)
+FIGURE = re.compile(r"\d+(?P<decimals>\.\d+)?(?P<cell><!--(?P<table>[^:>]+):(?P<row>[^:>]+):(?P<column>min|max|\d+)(?::(?P<place>\d+))?-->)")
 
 
 def read(path):
@@ -83,7 +87,17 @@ def filled(text, tables, page):
         if match["name"] not in tables:
             raise SystemExit(f"{page}: no table is called '{match['name']}'; there are {', '.join(tables)}")
         return f"{match[1]}{tables[match['name']]}\n{match[3]}"
-    return BLOCK.sub(block, text)
+
+    def figure(match):
+        rows = [line.replace("`", "").strip("| ").split(" | ") for line in tables.get(match["table"], "").splitlines()]
+        cells = min((cells for cells in rows if cells[0].startswith(match["row"])), key=lambda cells: len(cells[0]), default=[])
+        numbers = [re.findall(r"\d+(?:\.\d+)?", cell)[int(match["place"] or 1) - 1:] for cell in cells[1:]]
+        values = [float(number[0]) for number in numbers if number]
+        pick = {"min": min, "max": max}.get(match["column"], lambda values: values[int(match["column"]) - 1])
+        if not values or match["column"].isdigit() and int(match["column"]) > len(values):
+            raise SystemExit(f"{page}: no table has the cell of {match['cell']}")
+        return f"{pick(values):.{max(0, len(match['decimals'] or '') - 1)}f}{match['cell']}"
+    return FIGURE.sub(figure, BLOCK.sub(block, text))
 
 
 def text_of(stored):

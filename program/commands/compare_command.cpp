@@ -7,8 +7,8 @@ namespace {
 
 struct CompareOptions {
     ComparisonOptions comparison;
-    std::vector<std::string> detectors{"rld-cbc", "rld-pair",  "rld-shape",     "front",
-                                       "clc",     "clc-paper", "delaunay-beam", "astar-lane"};
+    std::vector<std::string> detectors{"rld-cbc", "rld-pair",  "rld-shape",    "front",
+                                       "clc",     "clc-paper", "delaunay-beam"};
     ParameterSource parameters;
     std::string directory;
     std::optional<std::size_t> nearest;

@@ -59,8 +59,7 @@ void add_cross_validate_command(CLI::App& program) {
         "cross-validate",
         "compares methods on courses that none of them has learned from: a fold for each family of courses");
     auto options = std::make_shared<CrossValidateOptions>();
-    options->detectors = {"front",     "rld-pair",      "rld-shape", "clc",
-                          "clc-paper", "delaunay-beam", "astar-lane"};
+    options->detectors = {"front", "rld-pair", "rld-shape", "clc", "clc-paper", "delaunay-beam"};
     SceneOptions& scenes = options->run.comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0, 50.0};
@@ -76,6 +75,7 @@ void add_cross_validate_command(CLI::App& program) {
         ->delimiter(',')
         ->capture_default_str();
     add_scene_options(command, scenes);
+    add_nearest_option(command, scenes.nearest, "keep only the N nearest cones ahead, for every method");
     command
         .add_option("--learn-condition", options->learning_conditions,
                     "conditions of the scenes to learn from")

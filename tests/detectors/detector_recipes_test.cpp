@@ -80,7 +80,6 @@ TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParam
     EXPECT_THAT(training_courses("clc-paper"), Not(Contains("slalom@23")));
     EXPECT_THAT(training_courses("clc"), Not(Contains("circle")));
     EXPECT_THAT(training_courses("delaunay-beam"), Contains("fsd_1"));
-    EXPECT_THAT(training_courses("astar-lane"), Contains("fsd_2"));
     EXPECT_THAT(training_courses("rld-shape"), Contains("fsd_6"));
     for (const char* learned : {"rld-learned", "rld-strip"})
         EXPECT_THAT(training_courses(learned), AllOf(Contains("fsd_6"), Contains("kidney@4")));

@@ -26,7 +26,7 @@ namespace conelane {
 /// Whether a detector may answer with a closed lane (Lane::closed), a whole lap in view.
 enum class ClosedLanes { never, possible };
 
-/// What a detector does with the colors of cones. Unknown ones never matter.
+/// What a detector does with the colors of cones. Unknown colors never matter.
 enum class ColorUse {
     ignored,    ///< the lane is the same for all colors
     by_weight,  ///< RldParameters::w_color says how much they count; by default it is 0
@@ -41,7 +41,7 @@ struct DetectorInfo {
     ColorUse color_use;
 };
 
-/// All detectors; the first one is the one to drive by.
+/// All detectors; the first one is meant for driving.
 [[nodiscard]] std::vector<DetectorInfo> detectors();
 
 /// The content of a file of weights, for programs that hold it in memory.
@@ -49,8 +49,8 @@ struct WeightsBytes {
     std::string bytes;
 };
 
-/// Options of a detector. An absent option has the value of the detector of that name. An option that the
-/// detector does not use is an error.
+/// Options of a detector. An absent option keeps the detector's default. An option that the detector does
+/// not use is an error.
 struct DetectorOptions {
     std::optional<RldParameters> rld_parameters = {};  ///< rld-...: the parameters of the objective
     std::optional<Pairing> pairing = {};               ///< rld-...: replaces the pairing of the parameters
@@ -61,9 +61,9 @@ struct DetectorOptions {
     std::optional<std::variant<std::filesystem::path, WeightsBytes>> weights = {};
 };
 
-/// The detector of that name. Without options it is the one that tables show under the name: a learned
-/// detector has its trained weights, `delaunay-beam` and `astar-lane` have tuned parameters, `rld-...` has
-/// the defaults of RldParameters, or those of with_shape_costs; tuned sets are in rld_parameter_sets.hpp.
+/// The detector of that name. Without options it is the detector that the tables show: a learned
+/// detector has its trained weights, `delaunay-beam` has tuned parameters, `rld-...` has the defaults of
+/// RldParameters, or those of with_shape_costs; tuned sets are in rld_parameter_sets.hpp.
 /// Throws InvalidInput: for an unknown name, listing the names; for an option that is out of range or that
 /// the detector does not use, naming the option; and for weights that cannot be read. Detectors are
 /// independent of each other; each serves one thread.

@@ -16,8 +16,8 @@ struct DrivablePoint {
     Point position{0.0, 0.0};
     double heading_rad = 0.0;    ///< of the driving direction, in (-pi, pi], counter-clockwise, 0 along +x
     double curvature_1pm = 0.0;  ///< [1/m], positive in a left bend
-    /// Distance to the boundary along the normal. Past the end of a boundary the lane keeps its last width
-    /// from the other boundary.
+    /// Distance to the boundary along the normal. Past the end of this boundary the lane keeps its last
+    /// width.
     double width_left_m = 0.0;
     double width_right_m = 0.0;  ///< likewise to the right
 };
@@ -31,7 +31,7 @@ struct BridgedGap {
                             ///< closed lane is in the gap
 };
 
-/// The centre line of a lane, ready to be driven.
+/// The centre line of a lane, for a controller.
 struct DrivableLane {
     /// At equal steps of arc length from the foot point on. In an open lane, the rest at the far end, shorter
     /// than a step, has no point. In a closed lane the step is adjusted to divide the circuit: the last point
@@ -42,8 +42,8 @@ struct DrivableLane {
     /// Arc length up to which the detector trusts the lane, at most length_m; absent if unknown.
     std::optional<double> trusted_m;
     std::vector<BridgedGap> bridged;  ///< left ones first, then by from_s_m
-    /// No cone of this boundary is known: it is assumed at DrivableOptions::default_width_m from the other
-    /// one, and widths to that side follow from it. At most one of the two is true.
+    /// No cone of this boundary is known: the boundary is assumed at DrivableOptions::default_width_m from
+    /// the other one. At most one of the two members is true.
     bool left_inferred = false;
     bool right_inferred = false;
 };
@@ -63,7 +63,7 @@ struct DrivableOptions {
 ///
 /// The two boundaries, polylines through their cones, are matched monotonically; a smoothing spline through
 /// the midpoints is the centre line. Its curvature is continuous, and it keeps at least 0.1 m from each
-/// boundary: it smooths less where smoothing would bring it nearer. The foot point is the nearest point of
+/// boundary: it is smoothed less where it would come nearer. The foot point is the nearest point of
 /// the centre line whose direction is within 90 degrees of the car's heading, or the nearest of all if there
 /// is none. If a lane begins ahead of the car, its first point is the foot point.
 ///
@@ -77,11 +77,11 @@ struct DrivableOptions {
 /// beside the known boundary, at default_width_m. `left_inferred` or `right_inferred` says so.
 ///
 /// A lane without extent has no points: no cones, one cone on each side, a closed lane with an empty side,
-/// shorter than 0.5 m, or unusable at the foot point. Throws InvalidInput naming the key: an option out of
-/// its range, a pose that is not finite, a cone that the lane names twice or that the scene does not have
-/// (`left[2]`), a cone that is not finite or farther than 1000 km from the car, a boundary longer than 20 km,
-/// a closed lane with fewer than three cones on a side. Cones at one place count as one. The same input gives
-/// the same output.
+/// shorter than 0.5 m, or too narrow, crossed or swapped at the foot point already. Throws InvalidInput
+/// naming the key: an option out of its range, a pose that is not finite, a cone that the lane names twice or
+/// that the scene does not have (`left[2]`), a cone that is not finite or farther than 1000 km from the car,
+/// a boundary longer than 20 km, a closed lane with fewer than three cones on a side. Cones at one place
+/// count as one. The same input gives the same output.
 [[nodiscard]] DrivableLane drivable(const Lane& lane, const Scene& scene,
                                     const DrivableOptions& options = {});
 

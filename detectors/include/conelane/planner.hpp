@@ -30,8 +30,8 @@ enum class Mission { trackdrive, autocross, acceleration, skidpad };
 enum class PlanState {
     searching,  ///< no lane has been found yet
     following,  ///< the lane is of this frame, or the course of the lap before, which this frame confirms
-    bridging,   ///< no lane in this frame: the rest of an earlier one, see Plan::age_s
-    lost,       ///< nothing of an earlier lane is left; there is no path
+    bridging,   ///< no lane in this frame: the rest of an earlier lane, see Plan::age_s
+    lost,       ///< no rest of an earlier lane; there is no path
     finished,   ///< the last line is crossed; the path is the stretch to come to rest on
 };
 [[nodiscard]] std::string_view to_string(PlanState state);
@@ -51,15 +51,14 @@ struct Plan {
     PlanState state = PlanState::searching;
     /// Begins at the car. Empty if state is searching or lost, and when the car is at rest at the end.
     DrivableLane lane;
-    double safe_m = 0.0;  ///< along `lane`: how far it is trusted, or the rest of the last trusted stretch
+    double safe_m = 0.0;  ///< trusted length of `lane`; of an earlier lane the rest of its trusted length
     double age_s = 0.0;   ///< age of the frame that the lane is from; 0 if following
-    int lap = 0;          ///< start lines crossed since the start, not counting the first one at the start
-    bool stop = false;    ///< come to rest inside the rest of `lane`
+    int lap = 0;          ///< how often the start line was crossed, without the crossing at the start
+    bool stop = false;    ///< the last line is crossed: come to rest before the end of `lane`
     /// Distance along `lane` to the line behind which the car has to stop; absent while that line is not on
     /// the lane, not known, or crossed.
     std::optional<double> stop_line_m;
-    /// Why the course of the lap before is not trusted as far as it is known, or why the path is lost; empty
-    /// otherwise.
+    /// Why the course of the lap before is not trusted to its end, or why the path is lost; else empty.
     std::string_view reason;
     std::string_view phase;  ///< skidpad: approach, right 1, right 2, left 1, left 2, exit; else empty
     LaneAnswer answer;       ///< the detector's answer to this frame

@@ -11,12 +11,12 @@
 
 namespace conelane {
 
-/// The cones that an RLD detector answers for, and the cones that it looks at.
+/// The cones that the lane of an RLD detector may have, and the cones among which it is searched.
 struct ConeSet {
     std::optional<std::size_t> nearest;  ///< this many nearest cones ahead; all cones if absent
-    /// The lane is found among this many nearest cones, then cut to the cone set (see cut_to_nearest). So it
-    /// goes on beyond the cone set, as the real lane does, and a false cone does not gain from being the last
-    /// one in line. Has an effect only if it is larger than `nearest`.
+    /// The lane is searched among this many nearest cones, then cut to the cone set (see cut_to_nearest). So
+    /// the last cone of the cone set is not the end of the lane, where a false cone in line would have no
+    /// rival. Has an effect only if it is larger than `nearest`.
     std::optional<std::size_t> context;
 
     /// Whether lanes are cut.
@@ -31,15 +31,16 @@ struct RldDetectorOptions {
     ConeSet cones;               ///< all cones by default
     double absolute_gap = 1e-9;  ///< see SolveLimits
     bool warm_start = false;     ///< start from the previous scene's lane graph, its cones found again by id
-    /// Values of d_near to try, in this order, where no lane graph is feasible [m]: a first cone may be
-    /// beyond d_near, and all cones of a short view may be within. An answer by one of them makes no
-    /// statement about its optimality, and its message says so. A limit that ends a try ends the search.
+    /// Values of d_near [m] to try, in this order, if no lane graph is feasible: the first cone may be
+    /// farther away than d_near, or all cones of a short view may be nearer. An answer by one of these values
+    /// claims no optimality, and its message says so. If a limit ends one of these searches, no other one
+    /// begins.
     std::vector<double> other_d_near_m = {};
 };
 
-/// A detector of an RLD solver: the lane graph of least cost is the lane. The time limit includes making
-/// problem and program. If a lane found among the context has no cone of the cone set on one side, the cone
-/// set is solved by itself, so status none is always about the cone set.
+/// A detector by an RLD solver: the lane graph of least cost is the lane. The time limit includes making
+/// problem and program. If the cut lane has no cone on one side, the cone set is solved by itself. So status
+/// none always says that the cone set has no lane graph.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_rld_detector(std::unique_ptr<RldSolver> solver,
                                                               const RldDetectorOptions& options);
 

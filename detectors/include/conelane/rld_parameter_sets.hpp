@@ -17,8 +17,7 @@ namespace conelane {
 ///   file contains its record.
 ///
 /// For the other sets, parameters/NAME.record.json has the scenes of the tuning and the figures on held-out
-/// tracks; docs/results.md compares the sets with the defaults. No set is better everywhere, so the default
-/// is none of them.
+/// tracks. No set is better everywhere, so none of them is the default.
 [[nodiscard]] std::vector<std::string_view> rld_parameter_set_names();
 
 /// The set of that name; nothing for an unknown name.

@@ -11,14 +11,14 @@ namespace conelane {
 struct VehicleLimits {
     double a_lateral_mps2 = 9.0;
     double a_brake_mps2 = 6.0;  ///< of the tyres, along the car in both directions
-    double a_drive_mps2 = 6.0;  ///< of the motor; more than the tyres transmit is not used
+    double a_drive_mps2 = 6.0;  ///< of the motor; the tyres may transmit less
     double v_max_mps = 20.0;
 };
 
 /// Where a profile begins and where it has to be at rest.
 struct SpeedTask {
     double v_now_mps = 0.0;  ///< at the first point
-    /// Along the path, for example Plan::safe_m; infinite: nowhere, and the path's end limits nothing.
+    /// Along the path, for example Plan::safe_m; infinite: the car need not be able to stop on the path.
     double stop_at_m = std::numeric_limits<double>::infinity();
 };
 

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-/// The library's version, MAJOR.MINOR.PATCH; what may change between versions is said in CONTRIBUTING.md.
+/// The library's version, MAJOR.MINOR.PATCH; docs/promises.md says which interfaces stay.
 [[nodiscard]] std::string_view version();
 
 }  // namespace conelane

@@ -10,8 +10,8 @@
 
 namespace conelane {
 
-/// Lagrange multipliers that prove a lower bound of (29) with all costs that parameters can add to it, for
-/// the pairing near_far. Every lane graph visits each cone at most once, holds at most one edge of each
+/// Lagrange multipliers that prove a lower bound of the objective, (29) and all costs that parameters add,
+/// for the pairing near_far. Every lane graph visits each cone at most once, holds at most one edge of each
 /// clique and at least two edges along the heading (9). So with non-negative multipliers m,
 ///     cost >= cost + sum_v m_v (visits_v - 1) + sum_q m_q (edges_q - 1) + m_h (2 - along_heading),
 /// and the right-hand side is a sum over two walks from near to far cones.
@@ -31,8 +31,8 @@ struct BoundVerdict {
     std::optional<double> bound;          ///< proven by the multipliers; infinite if no lane graph exists
 };
 
-/// Recomputes the bound from the scene alone, by shortest walks of its own; shares no code with any solver.
-/// The claim may exceed what is recomputed by 1e-6.
+/// Recomputes the bound from the scene alone, by its own shortest walks; shares no code with any solver.
+/// The claimed bound may exceed the recomputed one by at most 1e-6.
 [[nodiscard]] BoundVerdict verify_bound(const Scene& scene, const RldParameters& parameters,
                                         const BoundCertificate& certificate);
 

@@ -17,13 +17,13 @@ struct CheckReport {
         violations;  ///< a sentence each, naming constraint and cones; empty for a lane graph
     std::optional<double> objective;  ///< (29), if every edge joins two cones of the scene
     std::size_t along_heading = 0;    ///< edges that count in (9)
-    /// More edges cannot repair a violation: one of (2), (5), (6), (27), (28), a crossing, or an invalid
-    /// edge.
+    /// Whether there is a violation that more edges cannot repair: of (2), (5), (6), (27), (28), a crossing
+    /// or an invalid edge.
     bool is_final = false;
 };
 
 /// Recomputes every constraint of the model and the objective from the scene alone. Shares no code with the
-/// builders of problem and program; a value within 1e-9 of its limit is within it.
+/// builders of problem and program. A value that exceeds its limit by at most 1e-9 keeps it.
 [[nodiscard]] CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph);
 
 /// What a solver claims about a lane graph.
@@ -34,8 +34,8 @@ struct Claim {
     double absolute_gap = 1e-6;
 };
 
-/// `check`, and whether the claimed objective is the recomputed one within 1e-6, the bound is not above it,
-/// and an optimal claim has a bound within the gap.
+/// The same, and whether the claimed objective is the recomputed one within 1e-6, whether the bound is not
+/// above the objective, and whether an optimal claim has a bound within the gap.
 [[nodiscard]] CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph,
                                 const Claim& claim);
 

@@ -28,25 +28,25 @@ struct Optimality {
     bool optimal;  ///< the gap is within the requested tolerance
 };
 
-/// A lane that a search met, and the iteration that met it; of a detector that ranks lanes, the rank, from 1.
+/// A lane that a search found.
 struct LaneCandidate {
     Lane lane;
-    std::int64_t iteration;
+    std::int64_t iteration;  ///< that found it; in a detector that ranks lanes the rank, from 1
     std::optional<double> confidence = {};  ///< probability that the lane is usable
 };
 
 struct Enumeration {
     std::int64_t iterations;
     bool complete;                          ///< the search space was exhausted before the iteration limit
-    std::vector<LaneCandidate> candidates;  ///< in the order met, or best first; see keep_candidates
+    std::vector<LaneCandidate> candidates;  ///< as found, or best first; empty without keep_candidates
 };
 
-/// What an optimising detector has solved, where that is not the lane of its answer by its own parameters. It
-/// is for those who check the claims of the detector.
+/// The lane that an optimising detector has solved, if its answer has another lane or was found by another
+/// d_near. It is there to check the claims of the detector.
 struct SolvedLane {
     Lane lane;                                  ///< before it was cut to the cone set
     std::optional<Optimality> optimality = {};  ///< of this lane
-    std::optional<double> d_near_m = {};        ///< by which it is feasible, if not that of the parameters
+    std::optional<double> d_near_m = {};        ///< with which it is feasible; absent: that of the parameters
 };
 
 /// Cones at most this far apart [m] are one cone that a map holds twice: the smallest cone of the rules is
@@ -77,7 +77,7 @@ struct LaneAnswer {
     /// both boundaries were seen without a gap, and 10 m at most.
     std::optional<double> trusted_m;
     std::optional<Optimality> optimality;  ///< of `lane` itself
-    std::optional<SolvedLane> solved;      ///< absent if that is `lane`, by the detector's own parameters
+    std::optional<SolvedLane> solved;      ///< absent if `lane` was solved, by the detector's own parameters
     std::optional<Enumeration> enumeration;
     std::vector<MergedCone> merged;  ///< by `cone`; empty if no cone is doubled
 };
@@ -112,9 +112,8 @@ class LaneDetector {
   protected:
     /// For a detector that merges cones up to `doubled_cone_m` [m] apart; 0.4 m at most.
     explicit LaneDetector(double doubled_cone_m);
-    /// What another detector finds in a scene that has passed `detect` already, so that nothing is checked
-    /// again: for detectors that stand before another. Precondition: that of `search`. Throws what its search
-    /// throws.
+    /// The answer of another detector to a scene that `detect` of this one has checked already. For detectors
+    /// that call another one. Precondition: that of `search`. Throws what the other's search throws.
     [[nodiscard]] static LaneAnswer search_by(LaneDetector& detector, const Scene& scene,
                                               const DetectionLimits& limits) {
         return detector.search(scene, limits);

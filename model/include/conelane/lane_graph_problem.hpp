@@ -14,7 +14,7 @@ namespace conelane {
 
 class Deadline;  // internal
 
-/// Lower bound of the car's distance to an edge's midpoint in (25): the cost has a pole at 0 [m].
+/// Smallest distance [m] of the car to an edge's midpoint in (25), because the cost has a pole at 0.
 inline constexpr double kMinCarDistance_m = 0.5;
 
 /// An edge of the problem and its numbers. Cone indices i < j.
@@ -35,8 +35,8 @@ struct ProblemEdge {
     /// ends at i and at j.
     double cost;
     bool along_heading;         ///< h_ij of (9)
-    bool high_cost;             ///< s_ij > s_crit (27), and no gap, or k_edge excludes it: never chosen
-    bool gap = false;           ///< s_ij > s_crit, and allowed over a gap by d_gap
+    bool high_cost;             ///< never chosen: s_ij > s_crit (27) and no gap, or excluded by k_edge
+    bool gap = false;           ///< s_ij > s_crit, but d_gap allows it over a gap
     double learned_cost = 0.0;  ///< of the edge alone; 0 if it is high_cost
 };
 
@@ -48,7 +48,7 @@ struct ProblemTurn {
     double angle_cost;  ///< t_ijk (20), without weight
     double unevenness;  ///< u_ijk, without weight; 0 if w_u is 0
     double cost;     ///< w_t t_ijk, of the extras w_u u_ijk + 2 w_n z_j, and of learned costs; not negative
-    bool high_cost;  ///< t_ijk > t_crit (28), or too sharp at an edge over a gap: never both chosen
+    bool high_cost;  ///< edges never chosen together: t_ijk > t_crit (28), or too sharp at a gap
     double learned_cost = 0.0;  ///< of the turn alone, not negative; 0 if it or an edge is high_cost
 };
 
@@ -67,13 +67,13 @@ struct LaneGraphProblem {
     std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
     std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< (6)-(8): edges too close, first < second
     std::vector<bool> near;                                      ///< r_i of (11)
-    /// All edges within s_crit, chosen or not by k_edge: those that may face another one, see facing_costs.
-    /// Empty if no cost needs them.
+    /// All edges within s_crit, also those that k_edge excludes: they may face another edge, see
+    /// facing_costs. Empty if no cost needs them.
     std::vector<Edge> facers;
-    /// z_i, see near_end_fit; 0 for a far cone. m_i = A_i - 2 (turns at i) is 1 if a path ends, else 0. So
-    /// - w_n sum_i z_i m_i is a cost of edges and turns, and solvers need no term for it.
+    /// z_i of formulation.md; 0 for a far cone. A path ends at i where m_i = A_i - 2 (turns at i) is 1, else
+    /// m_i is 0. So - w_n sum_i z_i m_i is a cost of edges and turns, and solvers need no term for it.
     std::vector<double> near_end_fit;
-    /// By cone: the learned cost if a path ends there, 0 or negative; it is a cost of edges and turns too.
+    /// By cone: the learned cost if a path ends there, at most 0; in the same way a cost of edges and turns.
     std::vector<double> learned_end_cost;
     std::vector<std::pair<std::size_t, std::size_t>> far_apart;  ///< (17): far cones i < j with D_ij > d_max
     std::vector<std::vector<double>> distance_m;                 ///< D_ij; filled for all_pairs only
@@ -85,8 +85,8 @@ struct LaneGraphProblem {
 [[nodiscard]] LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters,
                                             EdgeExtent extent = EdgeExtent::candidates);
 
-/// A larger problem is not solved, because the memory of solvers grows with the square of its edges. Scenes
-/// of a car are smaller: 234 cones within 50 m, half of them false, give a tenth of these edges.
+/// A problem with more edges is not solved, because the memory of solvers grows with their square. Scenes of
+/// a car are smaller: 234 cones within 50 m, half of them false, give a tenth of these edges.
 inline constexpr std::size_t kMaxProblemEdges = 16'384;
 /// Largest number of turns, conflicts and far-apart pairs together, below 256 MB.
 inline constexpr std::size_t kMaxProblemEntries = 4'000'000;

@@ -74,8 +74,8 @@ void validate(const PartNetworks<Part>& costs) {
 /// - of an edge, the network itself,
 /// - of a turn, the network where it is positive, else 0, so that no turn gains,
 /// - of a near or far end, the network where it is negative, else 0, so that every end gains.
-/// This restricts nothing: every lane graph has two near and two far ends, and two turns less for each path
-/// than edges, so a constant moved from turns to edges, or added to all ends, changes no optimum.
+/// The signs restrict nothing: every lane graph has two near and two far ends, and two turns fewer than
+/// edges. So a constant that moves from turns to edges, or is added to all ends, changes no optimum.
 struct LearnedCosts : PartNetworks<LearnedPart> {
     [[nodiscard]] static LearnedCosts zero(std::size_t units = 0) { return {PartNetworks::zero(units)}; }
     bool operator==(const LearnedCosts&) const = default;

@@ -17,7 +17,7 @@ enum class Pairing {
 [[nodiscard]] std::string_view to_string(Pairing pairing);
 
 /// The symbols of the RLD paper. The paper prints no values; the defaults were found by hand on recorded
-/// tracks. d_max is the widest lane: a larger one lets one boundary go on alone.
+/// tracks. d_max is the widest lane: with a larger value one boundary may go on alone.
 struct RldParameters {
     double d_e = 3.2;                   ///< expected spacing of a boundary's cones [m]
     double d_t = 1.7;                   ///< spacing threshold [m]
@@ -58,11 +58,11 @@ struct RldParameters {
 
     double d_side = 0.0;  ///< a near endpoint is nearer to the car's axis than this [m]; off at 0
 
-    // An edge joins cones that are among the nearest of each other, seen from one of them; off at 0.
+    // An edge joins two cones, one of which is among the nearest cones of the other; off at 0.
     double nearest_of_edge = 0.0;  ///< k_edge: for one end, fewer cones than this are nearer than the other
     double nearest_of_gap = 0.0;   ///< k_gap: the same for an edge over a gap
 
-    /// Costs from learned_costs.hpp, added to those above; none by default. Never changed once it is here.
+    /// Costs from learned_costs.hpp, added to those above; none by default. Not changed after it is set.
     std::shared_ptr<const LearnedCosts> learned_costs = {};
 };
 

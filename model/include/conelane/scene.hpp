@@ -25,7 +25,7 @@ struct Pose {
     [[nodiscard]] double left_m(const Point& point) const;
 };
 
-/// `orange` says nothing of the size; the planner takes the start line from `big_orange` cones first.
+/// `orange` is a cone of either size; the planner takes the start line from `big_orange` cones first.
 enum class ConeColor { unknown, blue, yellow, orange, big_orange };
 [[nodiscard]] std::string_view to_string(ConeColor color);
 [[nodiscard]] constexpr bool is_orange(ConeColor color) {
@@ -34,7 +34,7 @@ enum class ConeColor { unknown, blue, yellow, orange, big_orange };
 
 /// How likely a cone is of each class, each in [0, 1], all together 1.
 struct ColorProbabilities {
-    double unknown = 0.0;  ///< that its class cannot be told
+    double unknown = 0.0;  ///< that the class cannot be recognised
     double blue = 0.0;
     double yellow = 0.0;
     double orange = 0.0;  ///< a small one
@@ -42,9 +42,9 @@ struct ColorProbabilities {
 
     bool operator==(const ColorProbabilities&) const = default;
 };
-/// Of a label: 1 for it, 0 for all others. Orange cones count as small ones.
+/// 1 for this color, 0 for all others. `orange` counts as small.
 [[nodiscard]] ColorProbabilities probabilities_of(ConeColor color);
-/// The most probable label, big orange cones with the small ones; unknown where two are equally probable.
+/// The most probable color, small and big orange together; unknown if two colors are equally probable.
 [[nodiscard]] ConeColor most_probable_color(const ColorProbabilities& probabilities);
 
 /// Covariance of the measured position of a cone, in the map frame [m^2].
@@ -72,7 +72,7 @@ struct Cone {
     /// gives the same answers as 0.
     std::optional<PositionCovariance> position_covariance{};
 
-    /// Those, or those of the label.
+    /// `color_probabilities`, or else those of `color`.
     [[nodiscard]] ColorProbabilities probabilities() const {
         return color_probabilities ? *color_probabilities : probabilities_of(color);
     }

@@ -11,21 +11,21 @@
 
 namespace conelane {
 
-/// What a solver does that others do not, joined by |.
+/// Properties that not every solver has, joined by |.
 enum class SolverTrait : unsigned {
     none = 0,
     exact = 1U << 0U,  ///< proves its optimum; others are heuristics, whose best status is feasible
     uses_formulation = 1U << 1U,    ///< others ignore the formulation
-    suits_paper = 1U << 2U,         ///< solves Formulation::paper of 12 cones at once; others take seconds
+    suits_paper = 1U << 2U,         ///< fast with Formulation::paper of 12 cones; others take seconds
     reads_time_of_day = 1U << 3U,   ///< a clock that is set during a solve changes its time limit
     refuses_huge_costs = 1U << 4U,  ///< costs of 1e25 and more give status error and a message
-    tuned = 1U << 5U,               ///< its library has not the default settings
+    tuned = 1U << 5U,               ///< its library has other settings than the default ones
 };
 [[nodiscard]] constexpr SolverTrait operator|(SolverTrait a, SolverTrait b) {
     return SolverTrait{static_cast<unsigned>(a) | static_cast<unsigned>(b)};
 }
 
-/// A solver by its name. Each stands beside its solver, in the .cpp file.
+/// A solver by its name. An entry is defined in the .cpp file of its solver.
 struct RldSolverEntry {
     std::string_view name;
     std::string_view description;

@@ -21,8 +21,8 @@ enum class SolveStatus {
 };
 [[nodiscard]] std::string_view to_string(SolveStatus status);
 
-/// Limits of every solver; each runs on one thread, without a relative gap. Every backend keeps its own
-/// deadline and, with it, the incumbent. A MILP solver knows objectives to the tolerance of its LP, about
+/// Limits of a solver, which runs on one thread and has no relative gap. Every backend keeps the deadline
+/// itself, so its incumbent is not lost. A MILP solver knows objectives to the tolerance of its LP, about
 /// 1e-7, for any gap.
 struct SolveLimits {
     /// Wall clock, from the call; infinity for no limit. At 0 and below nothing is tried.
@@ -36,9 +36,9 @@ struct SolveLimits {
 struct SolveArguments {
     SolveLimits limits = {};
     /// A lane graph that solvers may use as their first incumbent, or nullptr. An infeasible start is
-    /// dropped. A feasible start is in the report unless a cheaper lane graph is, also if status is error.
+    /// dropped. The report has a feasible start or a cheaper lane graph, also if status is error.
     const LaneGraph* start = nullptr;
-    /// Draws another order of the search where a solver can, as programs from outside; 0 for its own order.
+    /// Another order of the search, in solvers that can change it, as programs from outside; 0: their own.
     std::uint64_t seed = 0;
 };
 
@@ -46,7 +46,7 @@ struct SolveArguments {
 struct RldReport {
     SolveStatus status = SolveStatus::error;
     std::optional<StopReason> stopped_by;
-    std::optional<LaneGraph> lane_graph;  ///< with status optimal and feasible; with error the warm start
+    std::optional<LaneGraph> lane_graph;  ///< if status is optimal or feasible; the start if it is error
     std::optional<double> objective;      ///< recomputed from the lane graph
     std::optional<double> bound;          ///< proven lower bound
     std::int64_t nodes = 0;

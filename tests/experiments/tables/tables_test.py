@@ -325,6 +325,13 @@ class Pages(unittest.TestCase):
         with self.assertRaises(SystemExit):
             tables.filled(page, {"two": ""}, "page")
 
+    def test_a_number_in_a_sentence_is_that_of_its_cell(self):
+        text = {"usable": "| usable | 0 % | 50 % |\n| --- | --- | --- |\n| `front` | 98.3/90 | 92.4/85 |"}
+        self.assertEqual(tables.filled("1.0<!--usable:front:2--> 7<!--usable:front:1:2--> 1.0<!--usable:front:min--> 1", text, "page"),
+                         "92.4<!--usable:front:2--> 90<!--usable:front:1:2--> 92.4<!--usable:front:min--> 1")
+        for cell in ("usable:front:3", "usable:clc:1", "other:front:1", "usable:front:1:3"):
+            self.assertRaises(SystemExit, tables.filled, f"1.0<!--{cell}-->", text, "page")
+
     def test_runs_of_one_origin_share_a_row(self):
         run = {"commit": "c", "compiler": "g", "machine": "m"}
         text = tables.runs_table({"a": run | {"machine": ""}, "b": run, "d": run | {"commit": "e"}, "f": run | {"commit": "h", "machine": ""}})

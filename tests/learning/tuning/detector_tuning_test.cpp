@@ -3,7 +3,7 @@
 #include "learning/tuning/detector_tuning.hpp"
 
 #include "experiments/methods/method.hpp"
-#include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
+#include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/refusal.hpp"
 
@@ -53,21 +53,21 @@ TEST(DetectorTuning, ShippedParametersAreInTheirRanges) {
         const DetectorRecipe& recipe = find_tunable(name);
         EXPECT_NO_THROW((void)recipe.tuned()->make(shipped_values(recipe))) << name;
     }
-    std::vector<double> values = shipped_values(find_tunable("astar-lane"));
+    std::vector<double> values = shipped_values(find_tunable("delaunay-beam"));
     values.front() = -1.0;
-    EXPECT_THROW((void)find_tunable("astar-lane").tuned()->make(values), InvalidInput);
+    EXPECT_THROW((void)find_tunable("delaunay-beam").tuned()->make(values), InvalidInput);
 }
 
 TEST(DetectorTuning, ValuesAreInTheOrderOfTheParameters) {
-    const std::vector<double> shipped = shipped_values(find_tunable("astar-lane"));
-    EXPECT_EQ(shipped.front(), 3.95) << "least_radius_m";
-    EXPECT_EQ(shipped.back(), 0.07304) << "heuristic";
-    EXPECT_EQ(values_of(find_tunable("astar-lane"), &TunableParameter::start).back(),
-              AstarLaneParameters{}.heuristic);
+    const std::vector<double> shipped = shipped_values(find_tunable("delaunay-beam"));
+    EXPECT_EQ(shipped.front(), 0.2449) << "w_turn";
+    EXPECT_EQ(shipped.back(), 9.616) << "start_radius_m";
+    EXPECT_EQ(values_of(find_tunable("delaunay-beam"), &TunableParameter::start).back(),
+              DelaunayBeamParameters{}.start_radius_m);
 }
 
 TEST(DetectorTuning, FilesHoldWhatWasFound) {
-    const DetectorRecipe& recipe = find_tunable("astar-lane");
+    const DetectorRecipe& recipe = find_tunable("delaunay-beam");
     const std::vector<double> values = values_of(recipe, &TunableParameter::lowest);
     EXPECT_EQ(parse_values(recipe, to_json_text(recipe, values), "p.json"), values);
 }
@@ -102,8 +102,9 @@ TEST_F(TuneDetector, WritesParametersAndTheirRecord) {
 }
 
 TEST_F(TuneDetector, BadOptionsAreRefused) {
-    expect_refused("tune-method --method clc --tracks generated:circle --out p.json", {"clc", "astar-lane"});
-    expect_refused("tune-method --method astar-lane --tracks generated:nowhere --out p.json", {"nowhere"});
+    expect_refused("tune-method --method clc --tracks generated:circle --out p.json",
+                   {"clc", "delaunay-beam"});
+    expect_refused("tune-method --method delaunay-beam --tracks generated:nowhere --out p.json", {"nowhere"});
 }
 
 }  // namespace
