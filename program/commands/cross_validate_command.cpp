@@ -75,7 +75,6 @@ void add_cross_validate_command(CLI::App& program) {
         ->delimiter(',')
         ->capture_default_str();
     add_scene_options(command, scenes);
-    add_nearest_option(command, scenes.nearest, "keep only the N nearest cones ahead, for every method");
     command
         .add_option("--learn-condition", options->learning_conditions,
                     "conditions of the scenes to learn from")
