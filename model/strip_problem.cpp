@@ -35,7 +35,6 @@ class Builder {
         if (problem_.triangles.size() > kMaxTriangles) return StopReason::memory;
         problem_.end_costs.assign(places_, 0.0);
         if (costs_ != nullptr) price();
-        if (costs_ != nullptr) leave_out_dear_columns();
         return stopped_ ? std::optional(StopReason::time) : std::nullopt;
     }
 
@@ -223,14 +222,6 @@ class Builder {
             }
         }
     }
-    void leave_out_dear_columns() {
-        const double most = problem_.parameters.c_max + kTieTolerance;
-        for (StripRung& rung : problem_.rungs) rung.may_start = rung.may_start && rung.start_cost <= most;
-        for (double& cost : problem_.turn_costs) cost = cost <= most ? cost : StripProblem::kForbidden;
-        std::erase_if(problem_.triangles,
-                      [&](const StripTriangle& triangle) { return triangle.cost > most; });
-        index_triangles();
-    }
     /// Of both boundaries.
     void price_turn(std::size_t cone, std::size_t a, std::size_t b) {
         const std::size_t degree = problem_.degree(cone);
@@ -274,7 +265,6 @@ void validate(const StripParameters& p) {
     require(p.w_min_m >= 0.0 && p.w_min_m < 100.0, "w_min_m", "must be at least 0 and below 100");
     require(p.w_max_m > p.w_min_m && p.w_max_m <= 100.0, "w_max_m", "must be above w_min_m, at most 100");
     require(p.d_end_m >= 0.0 && p.d_end_m <= 1000.0, "d_end_m", "must be between 0 and 1000");
-    require(p.c_max > 0.0, "c_max", "must be above 0");
     if (p.costs) validate(*p.costs);
 }
 

@@ -16,7 +16,6 @@ struct StripParameters {
     double w_max_m = 6.5;  ///< largest length of a rung [m]; above w_min_m, at most 100
     double d_end_m = 0.0;  ///< a lane ends at cones farther from the car than this [m]; 0: at any
     std::shared_ptr<const StripCosts> costs = {};  ///< replace those of the gates
-    double c_max = 1e6;  ///< no start, turn or triangle with its edge costs more, by `costs`; above 0
 };
 /// Throws InvalidInput naming the first parameter that is out of its range.
 void validate(const StripParameters& parameters);

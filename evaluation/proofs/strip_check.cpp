@@ -66,10 +66,8 @@ class StripReference {
         return width(l, r) >= Real(p_.w_min_m) - kTie && width(l, r) <= Real(p_.w_max_m) + kTie;
     }
     [[nodiscard]] bool may_start(std::size_t l, std::size_t r) const {
-        return is_rung(l, r) && graph_.is_near(l) && graph_.is_near(r) && left(l) > left(r) &&
-               !is_dear(start(l, r));
+        return is_rung(l, r) && graph_.is_near(l) && graph_.is_near(r) && left(l) > left(r);
     }
-    [[nodiscard]] bool is_dear(Real cost) const { return p_.costs && cost > Real(p_.c_max) + kTie; }
     [[nodiscard]] bool may_end(std::size_t cone) const {
         return p_.d_end_m == 0.0 || size(at_[cone]) > Real(p_.d_end_m) + kTie;
     }
@@ -235,9 +233,7 @@ Real boundary_cost(const StripReference& reference, const std::vector<std::size_
         if (graph.exceeds_t_crit(side[k - 1], side[k], side[k + 1]) ||
             (over_gap && !graph.is_straight(side[k - 1], side[k], side[k + 1])))
             violations.emplace_back("(28) a turn is not allowed");
-        const Real turn = reference.turn(side[k - 1], side[k], side[k + 1], is_left);
-        if (reference.is_dear(turn)) violations.emplace_back("a turn costs more than c_max");
-        cost += turn;
+        cost += reference.turn(side[k - 1], side[k], side[k + 1], is_left);
     }
     return cost + reference.begin(side.front()) + reference.end(side[side.size() - 2], side.back());
 }
@@ -250,15 +246,12 @@ Real cheapest_triangles(const StripReference& reference, const std::vector<std::
         for (std::size_t j = 0; j < right.size(); ++j) {
             if (!reference.is_rung(left[i], right[j])) continue;
             if (i == 0 && j == 0) least[0][0] = reference.start(left[0], right[0]);
-            const auto reach = [&](Real before, std::size_t from, std::size_t to, std::size_t across) {
-                const Real cost = reference.triangle(from, to, across);
-                if (!reference.is_dear(cost + reference.edge(from, to)))
-                    least[i][j] = std::min(least[i][j], before + cost);
-            };
             if (i > 0 && reference.side(left[i - 1], left[i], right[j]) < 0)
-                reach(least[i - 1][j], left[i - 1], left[i], right[j]);
+                least[i][j] = std::min(least[i][j],
+                                       least[i - 1][j] + reference.triangle(left[i - 1], left[i], right[j]));
             if (j > 0 && reference.side(right[j - 1], right[j], left[i]) > 0)
-                reach(least[i][j - 1], right[j - 1], right[j], left[i]);
+                least[i][j] = std::min(least[i][j],
+                                       least[i][j - 1] + reference.triangle(right[j - 1], right[j], left[i]));
         }
     }
     return least.back().back();
