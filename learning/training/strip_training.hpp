@@ -19,7 +19,7 @@ struct StripTrainingOptions : CostTrainingOptions {
     /// The training begins with their costs; linear ones get hidden units.
     StripParameters parameters = driving_strip_parameters();
     std::size_t lanes = 8;
-    std::size_t max_cones = 90;
+    std::size_t max_cones = 120;
     std::size_t max_labels = 5'000;
 };
 /// Those of the record, which determine the costs together with the courses, and how it is run.
