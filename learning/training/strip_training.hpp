@@ -16,6 +16,10 @@ void add_strip_gradient(const StripProblem& problem, const StripFeatures& featur
 
 /// Most are explained by option_fields.
 struct StripTrainingOptions : CostTrainingOptions {
+    StripTrainingOptions() {
+        steps = 300;
+        learning_rate = 0.02;
+    }
     /// The training begins with their costs; linear ones get hidden units.
     StripParameters parameters = driving_strip_parameters();
     std::size_t lanes = 8;
