@@ -8,14 +8,21 @@ namespace {
 /// Lanes beside the answer, and how much their search may cost: with more, confidences hardly change.
 constexpr std::size_t kLanes = 12;
 constexpr std::size_t kLabelsOfOthers = 2'000;
-/// A lane that costs so much more is e times less likely, and nearly impossible at ten times that.
-constexpr double kTemperature = 1.0;
 /// The lanes that agree are that likely where the answer is trusted.
 constexpr double kLeastTrust = 0.95;
 constexpr double kUsable_m = 20.0;
 
+/// How many cones of a boundary another one follows, from the first cone that both have on. One of them may
+/// begin earlier.
 std::size_t in_common(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b) {
-    return static_cast<std::size_t>(std::ranges::mismatch(a, b).in1 - a.begin());
+    auto at_a = a.begin();
+    auto at_b = std::ranges::find(b, a.front());
+    if (at_b == b.end()) {
+        at_b = b.begin();
+        at_a = std::ranges::find(a, b.front());
+        if (at_a == a.end()) return 0;
+    }
+    return static_cast<std::size_t>(std::mismatch(at_a, a.end(), at_b, b.end()).first - a.begin());
 }
 
 class StripDetector : public LaneDetector {
@@ -32,7 +39,7 @@ class StripDetector : public LaneDetector {
         const StripReport report = solver_.solve(*made.problem, {.limits = {deadline.remaining_ms()},
                                                                  .lanes = kLanes,
                                                                  .labels_of_others = kLabelsOfOthers,
-                                                                 .worst_of_lanes = 10.0 * kTemperature});
+                                                                 .worst_of_lanes = 10.0 * kStripTemperature});
         answer.status = lane_status(report.status);
         answer.message = report.message;
         answer.stopped_by = report.stopped_by;
@@ -72,7 +79,7 @@ StripTrust strip_trust(const StripProblem& problem, const Scene& scene, std::spa
     double sum = 0.0;
     for (const StripLane& lane : lanes) {
         const double over = cheapest_strip(problem, lane).value().cost - strip.cost;
-        others.push_back({std::exp(-over / kTemperature), in_common(answer.left, lane.left),
+        others.push_back({std::exp(-over / kStripTemperature), in_common(answer.left, lane.left),
                           in_common(answer.right, lane.right)});
         sum += others.back().share;
     }

@@ -9,8 +9,12 @@ namespace conelane {
 /// What the status of a solver is for a detector: a lane, optimal or not, is found.
 [[nodiscard]] LaneStatus lane_status(SolveStatus status);
 
-/// Where the first of some lanes, the answer, can be relied on. Each has the probability exp(-cost), divided
-/// by the sum over all of them: lanes that are not among them are impossible.
+/// A lane that costs so much more is e times less likely. Below 1, because lanes that differ in one cone may
+/// both be usable; set by the FSD courses, which the costs had not seen.
+inline constexpr double kStripTemperature = 0.35;
+
+/// Where the first of some lanes, the answer, can be relied on. Each has the probability
+/// exp(-cost / kStripTemperature), divided by the sum over all of them: other lanes are impossible.
 struct StripTrust {
     double confidence =
         0.0;  ///< probability of the lanes that have its first 20 m; of a shorter lane, its own

@@ -243,14 +243,12 @@ Learned load_rld(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
 
 // The costs of the strip program, with the options of the shipped ones. They ignore colours.
 
-constexpr std::size_t kStripSteps = 1500;
-
 void learn_strip(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kStrip;
     if (fs::exists(file)) return;
     StripTrainingOptions training;
     training.steps =
-        static_cast<std::size_t>(std::lround(options.rld_steps * static_cast<double>(kStripSteps)));
+        static_cast<std::size_t>(std::lround(options.rld_steps * static_cast<double>(training.steps)));
     training.seed = options.scenes.seed;
     training.threads = options.scenes.threads;
     training.checkpoint = folder / kStripCheckpoint;

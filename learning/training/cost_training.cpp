@@ -37,12 +37,6 @@ void add_hidden_units(std::span<LearnedNetwork> networks, std::size_t units, std
     }
 }
 
-double CostMargin::of(const Scene& scene, std::size_t i, std::size_t j, bool is_true) const {
-    const Point middle = 0.5 * (scene.cones[i].position + scene.cones[j].position);
-    const bool is_near = (middle - scene.pose.position).norm() < near_m;
-    return (is_true ? 1.0 : -1.0) * (is_near ? near : far);
-}
-
 OptionFields cost_fields(CostTrainingOptions& options, const OptionFields& own) {
     OptionFields fields = draw_fields(options, false);
     const OptionFields shared{
@@ -52,11 +46,7 @@ OptionFields cost_fields(CostTrainingOptions& options, const OptionFields& own) 
          {0.0, 256.0},
          "hidden units of each network; 0 for linear costs, a readable weight a feature"},
         {"--steps", "steps", &options.steps, kCountOrNone, "steps of Adam"},
-        {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate, which falls to 0"},
-        {"--margin", "margin.near", &options.margin.near, kNotNegative,
-         "cost by which the true lane has to beat another one, for each edge within 20 m that differs"},
-        {"--far-margin", "margin.far", &options.margin.far, kNotNegative, "the same beyond 20 m"},
-        {"", "margin.near_m", &options.margin.near_m}};
+        {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate, which falls to 0"}};
     fields.insert(fields.end(), shared.begin(), shared.end());
     fields.insert(fields.end(), own.begin(), own.end());
     const OptionFields run = run_fields(options, "--report-every");

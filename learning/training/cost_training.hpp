@@ -30,17 +30,6 @@ void add_gradient(const LearnedNetwork& network, std::span<const double> feature
 /// Precondition: they have none.
 void add_hidden_units(std::span<LearnedNetwork> networks, std::size_t units, std::uint64_t seed);
 
-/// While the rival of the truth is searched, this margin is subtracted from the cost of each edge that is not
-/// in the truth, and added to the cost of each edge that is. The rival is a cheap lane that is wrong.
-struct CostMargin {
-    double near = 0.4;  ///< of an edge within near_m of the car
-    double far = 0.2;   ///< of any other edge
-    double near_m = 20.0;
-
-    /// Of the edge between two cones.
-    [[nodiscard]] double of(const Scene& scene, std::size_t i, std::size_t j, bool is_true) const;
-};
-
 /// Most are explained by option_fields.
 struct CostTrainingOptions : DrawnTrainingOptions {
     CostTrainingOptions() {
@@ -48,7 +37,6 @@ struct CostTrainingOptions : DrawnTrainingOptions {
         scenes.noise_share = 0.0;
         scenes.highest_rate = 0.6;
     }
-    CostMargin margin;
     std::size_t units = 16;
     std::size_t steps = 2000;
     double learning_rate = 5e-3;  ///< of Adam, falls to 0 along a cosine

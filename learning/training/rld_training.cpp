@@ -93,8 +93,10 @@ CostLoss RldLearner::add(const AnnotatedScene& scene, const RldParameters& param
     loss.allowed = !is_too_large(problem) && is_feasible(problem, truth);
     if (!loss.allowed) return loss;
     for (ProblemEdge& edge : problem.edges) {
+        const Point middle = 0.5 * (scene.scene.cones[edge.i].position + scene.scene.cones[edge.j].position);
+        const bool is_near = (middle - scene.scene.pose.position).norm() < margin_.near_m;
         const bool is_true = std::ranges::binary_search(truth.edges, Edge{edge.i, edge.j});
-        edge.cost += margin_.of(scene.scene, edge.i, edge.j, is_true);
+        edge.cost += (is_true ? 1.0 : -1.0) * (is_near ? margin_.near : margin_.far);
     }
     const RldReport report = solver_->solve(problem, {.start = &truth});
     loss.proven = report.status == SolveStatus::optimal;
@@ -164,14 +166,19 @@ LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, st
 
 OptionFields option_fields(RldTrainingOptions& options) {
     options.parameters_hash = tag_of("", options.parameters).hash.value();
-    return cost_fields(options,
-                       {{"", "parameters_hash", &options.parameters_hash},
-                        {"--max-work",
-                         "max_work",
-                         &options.max_work,
-                         {.least = 1.0},
-                         "limit of each exact search, in steps of about a nanosecond; then its best lane "
-                         "counts"}});
+    return cost_fields(
+        options, {{"", "parameters_hash", &options.parameters_hash},
+                  {"--margin", "margin.near", &options.margin.near, kNotNegative,
+                   "cost by which the true lane has to beat another one, for each edge within 20 m "
+                   "that differs"},
+                  {"--far-margin", "margin.far", &options.margin.far, kNotNegative, "the same beyond 20 m"},
+                  {"", "margin.near_m", &options.margin.near_m},
+                  {"--max-work",
+                   "max_work",
+                   &options.max_work,
+                   {.least = 1.0},
+                   "limit of each exact search, in steps of about a nanosecond; then its best lane "
+                   "counts"}});
 }
 
 LearnedCosts train_rld(const std::vector<Track>& courses, const RldTrainingOptions& options,

@@ -10,6 +10,14 @@ namespace conelane::learning {
 /// boundaries.
 [[nodiscard]] LaneGraph true_lane_graph(const AnnotatedScene& scene);
 
+/// While the rival of the truth is searched, this margin is subtracted from the cost of each edge that is not
+/// in the truth, and added to the cost of each edge that is. The rival is a cheap lane graph that is wrong.
+struct RldMargin {
+    double near = 0.4;  ///< of an edge within near_m of the car
+    double far = 0.2;   ///< of any other edge
+    double near_m = 20.0;
+};
+
 /// Adds `factor` times the derivatives of the learned cost of a lane graph by all numbers. At a limit of
 /// LearnedCosts, such as a turn that would gain, the derivative counts only if a step along it leaves the
 /// limit.
@@ -36,6 +44,7 @@ struct RldTrainingOptions : CostTrainingOptions {
     /// with them, and linear ones get hidden units; otherwise it begins with shape_as_learned_costs.
     RldParameters parameters = rld_learning_parameters();
     std::string parameters_hash;  ///< set by option_fields
+    RldMargin margin;
     std::int64_t max_work = 15'000'000;
 };
 /// Those of the record, which determine the costs together with the courses, and how it is run.
@@ -58,7 +67,7 @@ class RldLearner {
     CostLoss add(const AnnotatedScene& scene, const RldParameters& parameters, LearnedCosts& gradient);
 
   private:
-    CostMargin margin_;
+    RldMargin margin_;
     std::unique_ptr<RldSolver> solver_;
 };
 

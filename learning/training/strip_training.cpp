@@ -4,8 +4,6 @@
 #include "evaluation/formats/weights_file.hpp"
 #include "model/geometry.hpp"
 
-#include <set>
-
 namespace conelane::learning {
 namespace {
 
@@ -61,21 +59,12 @@ void add_strip_gradient(const StripProblem& problem, const StripFeatures& featur
 CostLoss StripLearner::add(const AnnotatedScene& scene, const StripParameters& parameters,
                            StripCosts& gradient) {
     CostLoss loss;
-    StripProblem problem = make_strip_problem(scene.scene, parameters);
+    if (scene.scene.cones.size() > max_cones_) return loss;
+    const StripProblem problem = make_strip_problem(scene.scene, parameters);
     const StripLane truth = true_strip_lane(scene);
     const std::optional<StripOfLane> true_strip = cheapest_strip(problem, truth);
     loss.allowed = true_strip.has_value();
     if (!loss.allowed) return loss;
-    std::set<std::array<std::size_t, 3>> true_edges;
-    for (const bool is_left : {true, false}) {
-        const std::vector<std::size_t>& side = is_left ? truth.left : truth.right;
-        for (std::size_t k = 1; k < side.size(); ++k) true_edges.insert({is_left, side[k - 1], side[k]});
-    }
-    for (StripTriangle& t : problem.triangles) {
-        const std::size_t from = problem.rungs[t.from].of(t.is_left);
-        const std::size_t to = problem.entered(t);
-        t.cost += margin_.of(scene.scene, from, to, true_edges.contains({t.is_left, from, to}));
-    }
     const StripReport report = solver_.solve(problem, search_);
     loss.proven = report.status == SolveStatus::optimal;
     std::vector<StripLane> lanes{truth};
@@ -87,10 +76,10 @@ CostLoss StripLearner::add(const AnnotatedScene& scene, const StripParameters& p
     std::vector<double> shares;  // of the sum of exponentials
     for (const StripLane& lane : lanes) {
         strips.push_back(cheapest_strip(problem, lane).value());
-        shares.push_back(-strips.back().cost / temperature_);
+        shares.push_back(-strips.back().cost);
     }
     const double of_truth = shares.front();
-    loss.loss = temperature_ * (to_probabilities(shares) - of_truth);
+    loss.loss = to_probabilities(shares) - of_truth;
     const StripFeatures features(scene.scene, problem.graph, problem.reach_m);
     shares.front() -= 1.0;
     for (std::size_t k = 0; k < lanes.size(); ++k) {
@@ -104,8 +93,8 @@ OptionFields option_fields(StripTrainingOptions& options) {
     return cost_fields(
         options,
         {{"--lanes", "lanes", &options.lanes, kCount, "number of cheapest lanes that the truth has to beat"},
-         {"--temperature", "temperature", &options.temperature, kPositive,
-          "a lane that costs so much more is e times less likely"},
+         {"--max-cones", "max_cones", &options.max_cones, kCount,
+          "scenes with more cones teach nothing: their searches take most of the time"},
          {"--max-labels", "max_labels", &options.max_labels, kCount,
           "limit of each search, in partial strips; then the lanes that it has found count"}});
 }

@@ -16,24 +16,26 @@ void add_strip_gradient(const StripProblem& problem, const StripFeatures& featur
 
 /// Most are explained by option_fields.
 struct StripTrainingOptions : CostTrainingOptions {
+    StripTrainingOptions() {
+        steps = 300;
+        learning_rate = 0.02;
+    }
     /// The training begins with their costs; linear ones get hidden units.
     StripParameters parameters = driving_strip_parameters();
-    std::size_t lanes = 12;
-    double temperature = 1.0;
-    std::size_t max_labels = 20'000;
+    std::size_t lanes = 8;
+    std::size_t max_cones = 120;
+    std::size_t max_labels = 5'000;
 };
 /// Those of the record, which determine the costs together with the courses, and how it is run.
 [[nodiscard]] OptionFields option_fields(StripTrainingOptions& options);
 
-/// The loss of the truth among the cheapest lanes, with the margin: the temperature times the negative
-/// logarithm of its share of the sum of exp(-cost / temperature). Reuses memory.
+/// The loss of the truth among the cheapest lanes: the negative logarithm of its share of the sum of
+/// exp(-cost). Reuses memory.
 class StripLearner {
   public:
     using Costs = StripCosts;
     explicit StripLearner(const StripTrainingOptions& options)
-        : margin_(options.margin),
-          search_{.lanes = options.lanes, .max_labels = options.max_labels},
-          temperature_(options.temperature) {}
+        : search_{.lanes = options.lanes, .max_labels = options.max_labels}, max_cones_(options.max_cones) {}
     [[nodiscard]] static StripParameters with(StripParameters parameters, const StripCosts& costs) {
         parameters.costs = std::make_shared<const StripCosts>(costs);
         return parameters;
@@ -43,9 +45,8 @@ class StripLearner {
     CostLoss add(const AnnotatedScene& scene, const StripParameters& parameters, StripCosts& gradient);
 
   private:
-    CostMargin margin_;
     StripOptions search_;
-    double temperature_;
+    std::size_t max_cones_;
     StripSolver solver_;
 };
 

@@ -58,7 +58,9 @@ TEST(StripDetector, TrustsWhatLikelyLanesHaveInCommon) {
         EXPECT_LE(among.trusted_m, alone.trusted_m);
         const std::array twice{lanes[0], lanes[0]};
         EXPECT_EQ(strip_trust(problem, scene, twice).trusted_m, alone.trusted_m);
-        const double over = cheapest_strip(problem, lanes[1])->cost - cheapest_strip(problem, lanes[0])->cost;
+        const double over =
+            (cheapest_strip(problem, lanes[1])->cost - cheapest_strip(problem, lanes[0])->cost) /
+            kStripTemperature;
         if (alone.trusted_m < 20.0) {
             EXPECT_NEAR(strip_trust(problem, scene, lanes.first(2)).confidence, 1.0 / (1.0 + std::exp(-over)),
                         1e-9);
