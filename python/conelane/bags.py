@@ -113,6 +113,8 @@ def _topic(reader: Any, key: str, wanted: Optional[str], types: Sequence[str]) -
     topics = sorted({one.topic for one in fitting})
     if not topics:
         raise _Refused(f"holds no {'topic ' + wanted if wanted else 'topic of ' + key}, only {all_topics}")
+    if key == "pose" and _plain(fitting[0].msgtype) not in types:
+        raise _Refused(f"{topics[0]}: type {_plain(fitting[0].msgtype)} has no poses; these have: {', '.join(types)}")
     if len(topics) > 1 and _plain(fitting[0].msgtype) not in POSE_TYPES[3:]:
         raise _Refused(f"--{key} has to say which topic is meant: {', '.join(topics)}")
     return fitting
@@ -163,7 +165,7 @@ def reporting(work: Any) -> int:
     except ModuleNotFoundError as error:
         print(f"conelane: {error.name} is missing: pip install 'conelane[bags]'", file=sys.stderr)
     except OSError as error:
-        print(f"conelane: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"conelane: {str(error.filename).partition('.part-')[0]}: {error.strerror}", file=sys.stderr)
     except ValueError as error:
         print(f"conelane: {error}", file=sys.stderr)
     return 2

@@ -72,28 +72,30 @@ class Mapping(NamedTuple):
             content = YAML(typ="safe", pure=True).load(Path(file)) or {}
         except (OSError, UnicodeDecodeError, YAMLError) as error:
             raise ValueError(f"{file}: cannot be read: {' '.join(str(error).split())}") from None
-        _require_keys(content, set(cls._fields) - {"definitions"}, f"{file}: ")
+        content = _given(content, set(cls._fields) - {"definitions"}, ("types",), f"{file}: ")
         types, definitions = {}, {}
-        for name, given in (content.pop("types", None) or {}).items():
-            place = f"{file}: types: {name}: "
-            _require_keys(given, {*Fields._fields, "definition"}, place)
+        for name, of_type in content.pop("types", {}).items():
+            place, name = f"{file}: types: {name}: ", _plain(str(name))
+            given = _given(of_type, {*Fields._fields, "definition"}, ("lists", "colors"), place)
             if "definition" in given:
-                definitions[_plain(name)] = given.pop("definition")
-            if not all(isinstance(given.get(key, {}), dict) for key in ("lists", "colors")):
-                raise ValueError(f"{place}lists and colors must be mappings")
-            types[_plain(name)] = Fields(**given)
-            for color in [*types[_plain(name)].lists.values(), *types[_plain(name)].colors.values()]:
-                if color is not None and color not in Color.__members__:
+                definitions[name] = given.pop("definition")
+            types[name] = Fields(**given)
+            for color in [*types[name].lists.values(), *types[name].colors.values()]:
+                if color is not None and str(color) not in Color.__members__:
                     raise ValueError(f"{place}'{color}' is not one of {', '.join(Color.__members__)}")
         return cls(**content, types=types, definitions=definitions)
 
 
-def _require_keys(given: Any, known: Iterable[str], place: str) -> None:
+def _given(given: Any, known: Iterable[str], mappings: Iterable[str], place: str) -> Dict[str, Any]:
+    """What a mapping of YAML says: text, but for some keys mappings."""
     if not isinstance(given, dict):
         raise ValueError(f"{place}must be a mapping of {', '.join(sorted(known))}")
-    for key in given:
+    for key, value in given.items():
         if key not in known:
             raise ValueError(f"{place}{key}: is not one of {', '.join(sorted(known))}")
+        if value is not None and not isinstance(value, dict if key in mappings else str):
+            raise ValueError(f"{place}{key}: must be {'a mapping' if key in mappings else 'text'}")
+    return {key: value for key, value in given.items() if value is not None}
 
 
 def _plain(type_name: str) -> str:

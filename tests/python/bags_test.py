@@ -321,12 +321,14 @@ class Bags(unittest.TestCase):
         write_bag(self.folder / "unknown", "mcap", poses() + run(make=custom, type_name="my_msgs/Cones"))
         self.refused(r"holds no topic of cones, only /cones \(my_msgs/Cones\)", self.folder / "unknown")
         self.refused("my_msgs/msg/Cones is unknown", self.folder / "unknown", "--cones", "/cones")
+        self.refused("/cones: type eufs_msgs/ConeArrayWithCovariance has no poses; these have: nav_msgs/Odometry", self.folder / "run.bag", "--pose", "/cones")
         write_bag(self.folder / "late.bag", 1, poses(0.2) + run(2.0)[5:])
         self.refused("no frame has a pose: no pose of 'base_link' in 'map' within", self.folder / "late.bag")
         write_bag(self.folder / "two.bag", 1, poses() + run() + run(topic="/other"))
         self.refused("--cones has to say which topic is meant: /cones, /other", self.folder / "two.bag")
         for text, pattern in (("cone: /x", "cone: is not one of"), ("types: {a/B: {list: 1}}", "types: a/B: list: is not one of"),
-                              ("types: {a/B: {lists: {seen: red}}}", "'red' is not one of"), ("types: {a/B: {lists: [seen]}}", "must be mappings"), ("{", "cannot be read")):
+                              ("types: {a/B: {lists: {seen: red}}}", "'red' is not one of"), ("types: {a/B: {lists: [seen]}}", "lists: must be a mapping"),
+                              ("car_frame: 5", "car_frame: must be text"), ("types: 5", "types: must be a mapping"), ("{", "cannot be read")):
             (self.folder / "m.yaml").write_text(text, encoding="utf-8")
             errors = io.StringIO()
             with contextlib.redirect_stderr(errors):

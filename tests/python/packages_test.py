@@ -66,7 +66,10 @@ class Packages(unittest.TestCase):
 
     def test_the_debian_package(self):
         files = subprocess.run(["dpkg-deb", "--contents", self.one(".deb")], check=True, capture_output=True, text=True).stdout
-        for name in ("./usr/bin/conelane\n", "./usr/include/conelane/planner.hpp", "/cmake/conelane/conelaneConfig.cmake", "libconelane_detectors.a",
+        fields = subprocess.run(["dpkg-deb", "--field", self.one(".deb")], check=True, capture_output=True, text=True).stdout
+        self.assertRegex(fields, r"Depends: .*libeigen3-dev.*python3 \(<< 3\.\d+\)")
+        self.assertRegex(fields, r"Maintainer: The conelane authors <.*\.invalid>\n")
+        for name in ("./usr/bin/conelane\n", "./usr/share/doc/conelane/copyright\n", "./usr/include/conelane/planner.hpp", "/cmake/conelane/conelaneConfig.cmake", "libconelane_detectors.a",
                      "./usr/lib/python3/dist-packages/conelane/page/replay.py"):
             self.assertIn(name, files)
         root = Path(self.folder.name, "root")
