@@ -203,8 +203,10 @@ class Builder {
                 rung.start_cost = learned(StripPart::start, features_.start(rung.left, rung.right));
         }
         std::vector<double> of_edge;
-        for (const ProblemEdge& edge : problem_.graph.edges)
+        for (const ProblemEdge& edge : problem_.graph.edges) {
+            if (stop()) return;
             of_edge.push_back(learned(StripPart::edge, features_.edge(edge.i, edge.j)));
+        }
         for (StripTriangle& t : problem_.triangles) {
             if (stop()) return;
             const std::size_t from = problem_.rungs[t.from].of(t.is_left);

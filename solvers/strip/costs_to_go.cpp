@@ -24,13 +24,16 @@ std::optional<StopReason> CostsToGo::compute(const StripProblem& problem, const 
     multipliers_.assign(problem.graph.cone_count, 0.0);
     sum_ = 0.0;
     list_turns();
-    reach();
+    if (!reach(deadline)) return StopReason::time;
     list_states();
     if (size_ > kMaxStates) return StopReason::memory;
     moves_.clear();
     turns_.clear();
     others_.clear();
-    for (const StripTriangle& triangle : problem.triangles) add_move(triangle);
+    for (const StripTriangle& triangle : problem.triangles) {
+        if (moves_.size() % 64 == 0 && deadline.passed()) return StopReason::time;
+        add_move(triangle);
+    }
     sort_rungs();
     const auto restart = [&] {
         costs_.assign(size_, StripProblem::kForbidden);
@@ -45,15 +48,14 @@ std::optional<StopReason> CostsToGo::compute(const StripProblem& problem, const 
         changed = false;
         for (const std::uint32_t rung : order_) {
             if (!is_stale(rung)) continue;
-            if (clock_ % 32 == 0 && deadline.passed()) return StopReason::time;
-            ++clock_;
+            if (++clock_ % 16 == 0 && deadline.passed()) return StopReason::time;
             if (relax(rung)) {
                 changed_at_[rung] = clock_;
                 changed = true;
             }
             relaxed_at_[rung] = clock_;
         }
-        if (++passes % kPassesBeforeLoops != 0 || !changed || !raise_loops()) continue;
+        if (++passes % kPassesBeforeLoops != 0 || !changed || !raise_loops(deadline)) continue;
         if (++restarts > kMaxRestarts) return StopReason::iterations;
         restart();
     }
@@ -80,8 +82,8 @@ bool CostsToGo::can_turn(const StripTriangle& t) const {
     return (reached_[t.from][t.is_left ? 0 : 1] & can_precede_[problem_->places_of[cone] + t.out]) != 0;
 }
 
-/// Follows the last edges from the starts.
-void CostsToGo::reach() {
+/// Follows the last edges from the starts. False if the deadline passed.
+bool CostsToGo::reach(const Deadline& deadline) {
     const auto& rungs = problem_->rungs;
     reached_.assign(rungs.size(), {0, 0});
     is_waiting_.assign(rungs.size(), 0);
@@ -93,6 +95,7 @@ void CostsToGo::reach() {
         is_waiting_[r] = 1;
     }
     for (std::size_t k = 0; k < waiting_.size(); ++k) {
+        if (k % 64 == 0 && deadline.passed()) return false;
         is_waiting_[waiting_[k]] = 0;
         for (const StripTriangle& t : problem_->leaving(waiting_[k])) {
             if (!can_turn(t)) continue;
@@ -104,6 +107,7 @@ void CostsToGo::reach() {
                 waiting_.push_back(t.to);
         }
     }
+    return true;
 }
 
 void CostsToGo::list_states() {
@@ -239,10 +243,11 @@ std::optional<StripStep> CostsToGo::cheapest(const StripState& state) const {
 }
 
 /// From the rungs that still change along the cheapest steps: whether a loop of negative cost was found.
-bool CostsToGo::raise_loops() {
+bool CostsToGo::raise_loops(const Deadline& deadline) {
     bool found = false;
     for (const std::uint32_t rung : order_) {
         if (!is_stale(rung)) continue;
+        if (deadline.passed()) return false;
         const Block& block = blocks_[rung];
         const double* const costs = costs_.data() + block.first;
         const auto least = static_cast<std::size_t>(

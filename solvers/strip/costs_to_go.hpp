@@ -84,7 +84,7 @@ class CostsToGo {
         return std::span(ins_).subspan(begin(rung, is_left),
                                        begin(rung + (is_left ? 0 : 1), !is_left) - begin(rung, is_left));
     }
-    void reach();
+    [[nodiscard]] bool reach(const Deadline& deadline);
     void list_turns();
     [[nodiscard]] bool can_turn(const StripTriangle& triangle) const;
     void list_states();
@@ -93,7 +93,7 @@ class CostsToGo {
     [[nodiscard]] bool is_stale(std::uint32_t rung) const;
     [[nodiscard]] bool relax(std::uint32_t rung);
     void relax(const StripTriangle& triangle, const Move& move);
-    [[nodiscard]] bool raise_loops();
+    [[nodiscard]] bool raise_loops(const Deadline& deadline);
     [[nodiscard]] bool raise_loop_from(StripState state);
     [[nodiscard]] std::optional<StripStep> cheapest(const StripState& state) const;
     [[nodiscard]] std::size_t entered(const StripStep& step) const {
