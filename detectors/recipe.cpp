@@ -2,6 +2,8 @@
 
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/drivable/drivable_answers.hpp"
+#include "detectors/parameters/learned_costs_reader.hpp"
+#include "detectors/strip_detector.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
@@ -103,6 +105,12 @@ constexpr DetectorRecipe kRecipes[]{
       ClosedLanes::never, ColorUse::by_weight},
      LearnedFrom(kLearnedRldWeights),
      RldRecipe{.make_solver = path_pair, .parameter_set = "learned", .other_d_near_m = kOtherNear_m}},
+    {{"rld-strip",
+      "exact search for the cheapest strip of triangles between two boundaries, by learned costs of both "
+      "together; proves its lane, and says how far it is to be trusted",
+      ClosedLanes::never, ColorUse::ignored},
+     LearnedFrom(kStripWeights),
+     StripRecipe{}},
     {{"rld-context", "RLD by the exact search among more cones, then cut to the nearest", ClosedLanes::never,
       ColorUse::by_weight},
      LearnedFrom::nothing(),
@@ -161,10 +169,19 @@ void require_used(const DetectorRecipe& recipe, const DetectorOptions& options) 
     if (options.nearest == std::size_t{0}) throw InvalidInput("nearest", "must be at least 1");
 }
 
-FrontWeights weights_of(const std::variant<std::filesystem::path, WeightsBytes>& source) {
+using WeightsSource = std::variant<std::filesystem::path, WeightsBytes>;
+
+FrontWeights weights_of(const WeightsSource& source) {
     const auto* const file = std::get_if<std::filesystem::path>(&source);
     return file != nullptr ? read_front_weights(*file)
                            : parse_front_weights(std::get<WeightsBytes>(source).bytes);
+}
+
+std::shared_ptr<const StripCosts> strip_costs_of(const std::optional<WeightsSource>& source) {
+    if (!source) return parse_strip_costs(kStripWeightsFile);
+    const auto* const file = std::get_if<std::filesystem::path>(&*source);
+    return file != nullptr ? read_strip_costs(*file)
+                           : parse_strip_costs(std::get<WeightsBytes>(*source).bytes);
 }
 
 }  // namespace
@@ -239,6 +256,10 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
         FrontOptions made = front->options();
         if (options.weights) made.weights = weights_of(*options.weights);
         detector = make_front_detector(made);
+    } else if (std::holds_alternative<StripRecipe>(recipe.how)) {
+        StripParameters made = driving_strip_parameters();
+        made.costs = strip_costs_of(options.weights);
+        detector = make_strip_detector(std::move(made));
     } else if (const auto* tuned_recipe = recipe.tuned()) {
         detector = tuned_recipe->make(shipped_values(recipe));
     } else {

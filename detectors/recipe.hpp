@@ -11,6 +11,7 @@ namespace conelane {
 
 // The files in parameters/, byte by byte, embedded when the library was configured.
 extern const std::string_view kLearnedWeightsFile;
+extern const std::string_view kStripWeightsFile;
 /// NAME.json; empty if there is none.
 [[nodiscard]] std::string_view parameter_file(std::string_view name);
 
@@ -29,6 +30,9 @@ struct RldRecipe {
 struct FrontRecipe {
     FrontOptions (*options)();
 };
+
+/// `rld-strip`, whose costs may be replaced.
+struct StripRecipe {};
 
 /// A number that tuning changes.
 struct TunableParameter {
@@ -76,18 +80,21 @@ class LearnedFrom {
 // Text for tables of detectors.
 inline constexpr std::array kFrontWeights{&kFrontFile};
 inline constexpr std::array kLearnedRldWeights{&kLearnedWeightsFile};
+inline constexpr std::array kStripWeights{&kStripWeightsFile};
 inline constexpr std::array kPaperClcWeights{&kRankNetPaperFile};
 inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile};
 
 /// How to make a detector.
 struct DetectorRecipe : DetectorInfo {
     LearnedFrom learned_from;
-    std::variant<RldRecipe, FrontRecipe, TunedRecipe, OtherRecipe> how;
+    std::variant<RldRecipe, FrontRecipe, StripRecipe, TunedRecipe, OtherRecipe> how;
 
     /// Whether it optimises the RLD objective.
     [[nodiscard]] bool is_rld() const { return std::holds_alternative<RldRecipe>(how); }
     /// Whether its weights may be replaced.
-    [[nodiscard]] bool takes_weights() const { return std::holds_alternative<FrontRecipe>(how); }
+    [[nodiscard]] bool takes_weights() const {
+        return std::holds_alternative<FrontRecipe>(how) || std::holds_alternative<StripRecipe>(how);
+    }
     /// Null if it has no numbers to tune.
     [[nodiscard]] const TunedRecipe* tuned() const { return std::get_if<TunedRecipe>(&how); }
 };

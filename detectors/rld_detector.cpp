@@ -1,6 +1,7 @@
 #include "conelane/rld_detector.hpp"
 
 #include "conelane/solve_scene.hpp"
+#include "detectors/strip_detector.hpp"
 #include "model/deadline.hpp"
 #include "model/valid_scene_problem.hpp"
 
@@ -37,12 +38,6 @@ SolvedScene solve(RldSolver& solver, const Scene& scene, const RldParameters& pa
     }
     solved.total_ms = watch.elapsed_ms();
     return solved;
-}
-
-LaneStatus lane_status(SolveStatus status) {
-    if (status == SolveStatus::infeasible) return LaneStatus::none;
-    if (status == SolveStatus::stopped) return LaneStatus::stopped;
-    return status == SolveStatus::error ? LaneStatus::error : LaneStatus::found;
 }
 
 class RldDetector : public LaneDetector {

@@ -56,25 +56,42 @@ const std::vector<ParameterSet>& parameter_sets() {
     return kSets;
 }
 
+template <typename Costs>
+std::shared_ptr<const Costs> parse_costs(std::string_view text, std::string_view command,
+                                         std::string_view of) {
+    WeightsReader file(text, "weights", command);
+    (void)file.version({1});
+    for (const auto part : Costs::kParts)
+        file.require_features("features." + std::string(to_string(part)), learned_features(part));
+    Costs costs;
+    for_each_costs_list(
+        costs, [&](const std::string& key, std::vector<double>& numbers) { numbers = file.numbers(key); });
+    file.require_no_other(of);
+    validate(costs);
+    return std::make_shared<const Costs>(std::move(costs));
+}
+
+template <typename Parse>
+auto read_costs(const std::filesystem::path& file, const Parse& parse) {
+    decltype(parse({})) costs;
+    with_weights_file(file, [&](std::string_view text) { costs = parse(text); });
+    return costs;
+}
+
 }  // namespace
 
 std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view text) {
-    WeightsReader file(text, "weights", "conelane train rld");
-    (void)file.version({1});
-    for (const LearnedPart part : kLearnedParts)
-        file.require_features("features." + std::string(to_string(part)), learned_features(part));
-    LearnedCosts costs;
-    for_each_costs_list(
-        costs, [&](const std::string& key, std::vector<double>& numbers) { numbers = file.numbers(key); });
-    file.require_no_other("learned costs");
-    validate(costs);
-    return std::make_shared<const LearnedCosts>(std::move(costs));
+    return parse_costs<LearnedCosts>(text, "conelane train rld", "learned costs");
+}
+std::shared_ptr<const StripCosts> parse_strip_costs(std::string_view text) {
+    return parse_costs<StripCosts>(text, "conelane train strip", "strip costs");
 }
 
 std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file) {
-    std::shared_ptr<const LearnedCosts> costs;
-    with_weights_file(file, [&](std::string_view text) { costs = parse_learned_costs(text); });
-    return costs;
+    return read_costs(file, parse_learned_costs);
+}
+std::shared_ptr<const StripCosts> read_strip_costs(const std::filesystem::path& file) {
+    return read_costs(file, parse_strip_costs);
 }
 
 std::vector<std::string_view> rld_parameter_set_names() {

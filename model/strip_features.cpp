@@ -58,7 +58,8 @@ class Depth {
 
 }  // namespace
 
-StripFeatures::StripFeatures(const Scene& scene, const LaneGraphProblem& graph, double reach_m) {
+StripFeatures::StripFeatures(const Scene& scene, const LaneGraphProblem& graph, double reach_m,
+                             const std::function<bool()>& stop) {
     const std::size_t n = graph.cone_count;
     const Point heading = scene.pose.heading();
     for (const Cone& cone : scene.cones) {
@@ -74,6 +75,7 @@ StripFeatures::StripFeatures(const Scene& scene, const LaneGraphProblem& graph, 
     around_.resize(n);
     const double reach = std::max(reach_m, kOn_m);
     for (std::size_t i = 0; i < n; ++i) {
+        if (stop && stop()) return;
         double sum = 0.0;
         for (std::size_t k = 0; k < n; ++k) {
             const double squared = (at_[k] - at_[i]).squaredNorm();

@@ -4,6 +4,7 @@
 #include "model/strip_costs.hpp"
 
 #include <compare>
+#include <functional>
 
 namespace conelane {
 
@@ -11,8 +12,10 @@ namespace conelane {
 /// other arithmetic finds the same costs. Graph and scene must outlive it.
 class StripFeatures {
   public:
-    /// `reach_m`: no triangle has a longer side.
-    StripFeatures(const Scene& scene, const LaneGraphProblem& graph, double reach_m);
+    /// `reach_m`: no triangle has a longer side. `stop` is called for each cone; once it returns true,
+    /// results are invalid.
+    StripFeatures(const Scene& scene, const LaneGraphProblem& graph, double reach_m,
+                  const std::function<bool()>& stop = {});
 
     [[nodiscard]] std::array<double, kStripEdgeFeatures> edge(std::size_t i, std::size_t j) const;
     /// Of the step of one boundary from a cone to the next, while the other boundary stays at `across`.

@@ -23,10 +23,12 @@ class Builder {
           problem_(problem),
           deadline_(deadline),
           costs_(problem.parameters.costs.get()),
-          features_(scene, problem.graph, problem.reach_m = longest_m()) {}
+          features_(scene, problem.graph, problem.reach_m = longest_m(),
+                    [&deadline] { return deadline.passed(); }) {}
 
     /// Why it stopped.
     std::optional<StopReason> build() {
+        if (deadline_.passed()) return StopReason::time;
         number_places();
         find_turns();
         add_rungs();
@@ -94,8 +96,8 @@ class Builder {
             rays.clear();
             for (const std::size_t edge : incident)
                 rays.push_back((features_.at(problem_.other(edge, cone)) - features_.at(cone)).normalized());
-            for (std::size_t b = 1; b < incident.size() && !stop(); ++b) {
-                for (std::size_t a = 0; a < b; ++a) {
+            for (std::size_t b = 1; b < incident.size(); ++b) {
+                for (std::size_t a = 0; a < b && !stop(); ++a) {
                     const bool over_gap =
                         problem_.graph.edges[incident[a]].gap || problem_.graph.edges[incident[b]].gap;
                     if (is_turn(rays[a], rays[b], over_gap)) allow(cone, a, b, 0.0);
@@ -152,12 +154,16 @@ class Builder {
     }
 
     void add_triangles() {
-        for (std::size_t e = 0; e < problem_.graph.edges.size() && !stop(); ++e) {
+        std::size_t most = 0;
+        for (const ProblemEdge& edge : problem_.graph.edges) most += 2 * across_[edge.i].size();
+        problem_.triangles.reserve(std::min(most, kMaxTriangles));
+        for (std::size_t e = 0; e < problem_.graph.edges.size(); ++e) {
             const ProblemEdge& edge = problem_.graph.edges[e];
             if (edge.high_cost) continue;
             const Point way = features_.at(edge.j) - features_.at(edge.i);
             for (const std::size_t across : across_[edge.i]) {
                 if (rung(edge.j, across) < 0) continue;
+                if (stop()) return;
                 const double side = cross(way, features_.at(across) - features_.at(edge.i));
                 if (side == 0.0) continue;
                 // Learned costs take the cones inside from here.
@@ -190,9 +196,14 @@ class Builder {
         first.assign(problem_.rungs.size() + 1, 0);
         for (const StripTriangle& triangle : problem_.triangles) ++first[triangle.from + 1];
         for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
-        std::vector<StripTriangle> sorted(problem_.triangles.size());
+        std::vector<StripTriangle> sorted;
+        sorted.reserve(problem_.triangles.size());
+        for (std::size_t k = 0; k < problem_.triangles.size() && !stop(); ++k) sorted.emplace_back();
         std::vector<std::uint32_t> next = first;
-        for (const StripTriangle& triangle : problem_.triangles) sorted[next[triangle.from]++] = triangle;
+        for (const StripTriangle& triangle : problem_.triangles) {
+            if (stop()) return;
+            sorted[next[triangle.from]++] = triangle;
+        }
         problem_.triangles = std::move(sorted);
     }
 
@@ -203,8 +214,10 @@ class Builder {
                 rung.start_cost = learned(StripPart::start, features_.start(rung.left, rung.right));
         }
         std::vector<double> of_edge;
-        for (const ProblemEdge& edge : problem_.graph.edges)
+        for (const ProblemEdge& edge : problem_.graph.edges) {
+            if (stop()) return;
             of_edge.push_back(learned(StripPart::edge, features_.edge(edge.i, edge.j)));
+        }
         for (StripTriangle& t : problem_.triangles) {
             if (stop()) return;
             const std::size_t from = problem_.rungs[t.from].of(t.is_left);
@@ -214,11 +227,11 @@ class Builder {
         }
         for (std::size_t cone = 0; cone < problem_.graph.cone_count; ++cone) {
             const auto& incident = problem_.graph.incident[cone];
-            for (std::size_t a = 0; a < incident.size() && !stop(); ++a) {
+            for (std::size_t a = 0; a < incident.size(); ++a) {
                 const std::size_t from = problem_.other(incident[a], cone);
                 problem_.end_costs[problem_.places_of[cone] + a] =
                     learned(StripPart::end, features_.end(from, cone));
-                for (std::size_t b = 0; b < a; ++b) price_turn(cone, a, b);
+                for (std::size_t b = 0; b < a && !stop(); ++b) price_turn(cone, a, b);
             }
         }
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "conelane/learned_costs.hpp"
+#include "model/strip_costs.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -11,7 +11,7 @@ namespace conelane {
 /// Calls use(key, numbers) for each list of numbers, in the order of files.
 template <typename Costs, typename Use>
 void for_each_costs_list(Costs& costs, const Use& use) {
-    for (const LearnedPart part : kLearnedParts) {
+    for (const auto part : Costs::kParts) {
         const std::string name(to_string(part));
         use(name + "_linear", costs.of(part).linear);
         use(name + "_hidden", costs.of(part).hidden);
@@ -27,5 +27,9 @@ void for_each_costs_list(Costs& costs, const Use& use) {
 
 /// The same from a file. Throws InvalidInput naming the file too, also if it cannot be read.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file);
+
+// The same of the costs of the strip program, which `conelane train strip` writes.
+[[nodiscard]] std::shared_ptr<const StripCosts> parse_strip_costs(std::string_view json);
+[[nodiscard]] std::shared_ptr<const StripCosts> read_strip_costs(const std::filesystem::path& file);
 
 }  // namespace conelane

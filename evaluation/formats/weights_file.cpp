@@ -78,6 +78,20 @@ Json floats(const Values& values) {
     return result;
 }
 
+template <typename Costs>
+std::string costs_json(const Costs& costs, std::string_view training) {
+    validate(costs);
+    WeightsText file(1, training);
+    Json names = Json::object();
+    for (const auto part : Costs::kParts)
+        names[std::string(to_string(part))] = names_of(learned_features(part));
+    file.add("features", names.dump());
+    for_each_costs_list(costs, [&](const std::string& key, const std::vector<double>& numbers) {
+        file.add_list(key, numbers);
+    });
+    return file.text();
+}
+
 }  // namespace
 
 std::string front_weights_json(const FrontWeights& weights, std::string_view training) {
@@ -93,16 +107,11 @@ std::string front_weights_json(const FrontWeights& weights, std::string_view tra
 }
 
 std::string learned_costs_json(const LearnedCosts& costs, std::string_view training) {
-    validate(costs);
-    WeightsText file(1, training);
-    Json names = Json::object();
-    for (const LearnedPart part : kLearnedParts)
-        names[std::string(to_string(part))] = names_of(learned_features(part));
-    file.add("features", names.dump());
-    for_each_costs_list(costs, [&](const std::string& key, const std::vector<double>& numbers) {
-        file.add_list(key, numbers);
-    });
-    return file.text();
+    return costs_json(costs, training);
+}
+
+std::string strip_costs_json(const StripCosts& costs, std::string_view training) {
+    return costs_json(costs, training);
 }
 
 std::string rank_net_json(const RankNetWeights& weights, std::string_view training) {

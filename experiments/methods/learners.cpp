@@ -1,3 +1,4 @@
+#include "detectors/strip_detector.hpp"
 #include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"
@@ -6,6 +7,7 @@
 #include "learning/training/clc_training.hpp"
 #include "learning/training/front_training.hpp"
 #include "learning/training/rld_training.hpp"
+#include "learning/training/strip_training.hpp"
 #include "learning/tuning/detector_tuning.hpp"
 #include "learning/tuning/rld_tuning.hpp"
 
@@ -22,6 +24,8 @@ constexpr const char* kShape = "rld-shape.json";
 constexpr const char* kLearnedRld = "rld-learned.json";
 constexpr const char* kLearnedRldCheckpoint = "rld-learned.checkpoint.json";
 constexpr const char* kColoredRldCheckpoint = "rld-learned.colors.checkpoint.json";
+constexpr const char* kStrip = "rld-strip.json";
+constexpr const char* kStripCheckpoint = "rld-strip.checkpoint.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 constexpr const char* kFrontColorsCheckpoint = "front.colors.checkpoint.json";
 
@@ -237,6 +241,27 @@ Learned load_rld(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
     return read_rld_parameters(folder / kLearnedRld);
 }
 
+// The costs of the strip program, with the options of the shipped ones. They ignore colours.
+
+void learn_strip(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
+    const fs::path file = folder / kStrip;
+    if (fs::exists(file)) return;
+    StripTrainingOptions training;
+    training.steps =
+        static_cast<std::size_t>(std::lround(options.rld_steps * static_cast<double>(training.steps)));
+    training.seed = options.scenes.seed;
+    training.threads = options.scenes.threads;
+    training.checkpoint = folder / kStripCheckpoint;
+    write(file, run_strip_training(options.tracks, training, {}));
+    fs::remove(training.checkpoint);
+}
+
+Learned load_strip(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
+    StripParameters parameters = driving_strip_parameters();
+    parameters.costs = read_strip_costs(folder / kStrip);
+    return DetectorFactory([parameters] { return make_strip_detector(parameters); });
+}
+
 // The weights of front. Its training draws its own scenes, so only these options count: seed, threads, and
 // whether there are colors. A set for colors is learned after the first set, like the shipped one.
 
@@ -314,7 +339,8 @@ constexpr std::array kLearners{NamedLearner{"front", {learn_front, load_front}},
                                NamedLearner{"clc-warm", {learn_clc, load_warm_clc}},
                                NamedLearner{"clc-paper", {learn_clc_paper, load_paper_clc}},
                                NamedLearner{"rld-shape", {learn_shape, load_shape}},
-                               NamedLearner{"rld-learned", {learn_rld, load_rld}}};
+                               NamedLearner{"rld-learned", {learn_rld, load_rld}},
+                               NamedLearner{"rld-strip", {learn_strip, load_strip}}};
 constexpr Learner kTuned{learn_tuned, load_tuned};
 
 }  // namespace

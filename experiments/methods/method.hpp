@@ -20,7 +20,7 @@ struct LearningOptions {
     std::size_t variants = 1;         ///< of each track, for networks
     std::size_t evaluations = 60;     ///< number of parameter sets that tuning tries, on every fourth pose
     double front_steps = 1.0;  ///< length of the training of `front`, as a share of the shipped training
-    double rld_steps = 1.0;    ///< the same of the training of `rld-learned`
+    double rld_steps = 1.0;    ///< the same of `rld-learned` and `rld-strip`
     /// Folder of the files that the detectors have learned without colors. Empty: they learn these first.
     std::filesystem::path without_colors;
 };

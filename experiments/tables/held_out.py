@@ -21,6 +21,7 @@ METHODS = {
     "front": "`front`",
     "clc": "`clc`",
     "rld-learned": "`rld-learned`",
+    "rld-strip": "`rld-strip`",
     "rld-shape": "`rld-shape`",
     "clc-paper": "`clc-paper`",
     "rld-pair": "`rld-pair`",

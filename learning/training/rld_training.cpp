@@ -3,37 +3,10 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "evaluation/formats/parameter_file.hpp"
-#include "evaluation/formats/provenance.hpp"
-#include "evaluation/seeded_random.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-
-#include <boost/random/normal_distribution.hpp>
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-#include <oneapi/tbb/parallel_for.h>
 
 namespace conelane::learning {
 namespace {
-
-/// Adds the derivatives of the network's value at these features, times `factor`.
-void add_gradient(const LearnedNetwork& network, std::span<const double> features, double factor,
-                  LearnedNetwork& gradient) {
-    const std::size_t units = network.units();
-    for (std::size_t i = 0; i < features.size(); ++i) gradient.linear[i] += factor * features[i];
-    for (std::size_t u = 0; u < units; ++u) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < features.size(); ++i) sum += network.hidden[i * units + u] * features[i];
-        if (sum <= 0.0) continue;
-        gradient.output[u] += factor * sum;
-        for (std::size_t i = 0; i < features.size(); ++i)
-            gradient.hidden[i * units + u] += factor * network.output[u] * features[i];
-    }
-}
-
-/// If a weight rarely has an effect, its derivative is mostly rounding.
-constexpr double kMinDeviation = 1e-3;
-/// Limit of the gradient's length, because single scenes may be completely wrong.
-constexpr double kMaxGradient = 20.0;
 
 /// The place of a feature among those of its part.
 std::size_t place_of(LearnedPart part, std::string_view name) {
@@ -46,13 +19,6 @@ double& weight(LearnedCosts& costs, LearnedPart part, std::string_view name) {
     return costs.of(part).linear.at(place_of(part, name));
 }
 
-/// The result of one draw of a step.
-struct Slot {
-    std::unique_ptr<RldLearner> learner;
-    LearnedCosts gradient;
-    std::vector<RldLearner::Loss> losses;
-};
-
 LearnedCosts initial_costs(const RldTrainingOptions& options) {
     const LearnedCosts start =
         options.parameters.learned_costs ? *options.parameters.learned_costs : shape_as_learned_costs();
@@ -61,102 +27,12 @@ LearnedCosts initial_costs(const RldTrainingOptions& options) {
     return is_linear ? with_hidden_units(start, options.units, options.seed) : start;
 }
 
-class RldTraining : public GradientLearner {
-  public:
-    RldTraining(const std::vector<Track>& courses, const RldTrainingOptions& options,
-                const std::function<void(const std::string&)>& say)
-        : options_(options),
-          say_(say),
-          scenes_(courses, options.scenes, options.seed),
-          costs_(initial_costs(options)),
-          slots_(options.draws_per_step) {
-        for (Slot& slot : slots_) {
-            slot.learner = std::make_unique<RldLearner>(options.margin, options.max_work);
-            slot.gradient = LearnedCosts::zero(options.units);
-        }
-    }
-
-    [[nodiscard]] const LearnedCosts& costs() const { return costs_; }
-    [[nodiscard]] bool is_done(std::size_t steps) const override { return steps >= options_.steps; }
-    void set_values(const Eigen::ArrayXd& values) override { set(costs_, values); }
-
-    [[nodiscard]] Step step(std::size_t number) override {
-        RldParameters parameters = options_.parameters;
-        parameters.learned_costs = std::make_shared<const LearnedCosts>(costs_);
-        oneapi::tbb::parallel_for(std::size_t{0}, slots_.size(), [&](std::size_t i) {
-            fill(slots_[i], static_cast<std::uint64_t>(number) * slots_.size() + i, parameters);
-        });
-        Eigen::ArrayXd gradient = flat(LearnedCosts::zero(options_.units));
-        double allowed = 0.0;
-        for (const Slot& slot : slots_) {
-            gradient += flat(slot.gradient);
-            for (const RldLearner::Loss& loss : slot.losses) {
-                ++sums_.scenes;
-                if (!loss.allowed) continue;
-                allowed += 1.0;
-                sums_.proven += loss.proven ? 1.0 : 0.0;
-                sums_.found += loss.found ? 1.0 : 0.0;
-                sums_.hinge += loss.hinge;
-            }
-        }
-        sums_.allowed += allowed;
-        if (allowed == 0.0) return {};
-        const double done = static_cast<double>(number) / static_cast<double>(options_.steps);
-        return {limited_mean(gradient, allowed, kMaxGradient), cosine_rate(options_.learning_rate, done)};
-    }
-
-    void report(std::size_t steps) override {
-        const double allowed = std::max(sums_.allowed, 1.0);
-        say_(fmt::format(
-            "step {} of {}: loss {:.4f}; of {} scenes the true lane is allowed in {:.1f} %; of these "
-            "{:.1f} % have no cheaper rival, {:.1f} % searched to the end",
-            steps, options_.steps, sums_.hinge / allowed, sums_.scenes,
-            100.0 * (sums_.allowed / static_cast<double>(std::max<std::size_t>(sums_.scenes, 1))),
-            100.0 * (sums_.found / allowed), 100.0 * (sums_.proven / allowed)));
-        sums_ = {};
-    }
-
-  private:
-    void fill(Slot& slot, std::uint64_t number, const RldParameters& parameters) const {
-        slot.gradient = LearnedCosts::zero(options_.units);
-        slot.losses.clear();
-        for (const AnnotatedScene& scene : scenes_.draw(number).scenes) {
-            if (scene.ground_truth && !scene.ground_truth->closed)
-                slot.losses.push_back(slot.learner->add(scene, parameters, slot.gradient));
-        }
-    }
-
-    const RldTrainingOptions& options_;
-    const std::function<void(const std::string&)>& say_;
-    FrontScenes scenes_;
-    LearnedCosts costs_;
-    std::vector<Slot> slots_;
-    struct Sums {  ///< since the last report
-        std::size_t scenes = 0;
-        double allowed = 0.0;  ///< scenes whose truth is a lane graph of the problem; of these:
-        double proven = 0.0;   ///< searches for a rival that ended with a proof
-        double found = 0.0;    ///< scenes without a cheaper rival
-        double hinge = 0.0;
-    } sums_;
-};
-
-std::string describe_training(const std::vector<Track>& courses, const RldTrainingOptions& options) {
-    nlohmann::ordered_json record{{"tracks", nlohmann::ordered_json::array()}};
-    for (const Track& track : courses) record["tracks"].push_back(track.name);
-    RldTrainingOptions copy = options;
-    record.update(record_of(option_fields(copy)));
-    return record.dump();
-}
-
 void validate(const RldTrainingOptions& options) {
     RldTrainingOptions copy = options;
     require_in_range(option_fields(copy));
     validate(options.parameters);
     if (!options.parameters.learned_costs) return;
-    for (const LearnedNetwork& network : options.parameters.learned_costs->networks) {
-        if (network.units() != 0 && network.units() != options.units)
-            throw InvalidInput("--units", "must be those of the costs that the training begins with");
-    }
+    require_units(options.parameters.learned_costs->networks, options.units);
 }
 
 }  // namespace
@@ -206,12 +82,12 @@ void add_cost_gradient(const LaneGraphProblem& problem, const LearnedFeatures& f
     }
 }
 
-RldLearner::RldLearner(const RldMargin& margin, std::int64_t max_work)
-    : margin_(margin), solver_(make_path_pair_solver({.max_work = max_work})) {}
+RldLearner::RldLearner(const RldTrainingOptions& options)
+    : margin_(options.margin), solver_(make_path_pair_solver({.max_work = options.max_work})) {}
 
-RldLearner::Loss RldLearner::add(const AnnotatedScene& scene, const RldParameters& parameters,
-                                 LearnedCosts& gradient) {
-    Loss loss;
+CostLoss RldLearner::add(const AnnotatedScene& scene, const RldParameters& parameters,
+                         LearnedCosts& gradient) {
+    CostLoss loss;
     LaneGraphProblem problem = make_problem(scene.scene, parameters);
     const LaneGraph truth = true_lane_graph(scene);
     loss.allowed = !is_too_large(problem) && is_feasible(problem, truth);
@@ -226,7 +102,7 @@ RldLearner::Loss RldLearner::add(const AnnotatedScene& scene, const RldParameter
     loss.proven = report.status == SolveStatus::optimal;
     if (!report.lane_graph) return loss;
     loss.found = *report.lane_graph == truth;
-    loss.hinge = std::max(0.0, objective(problem, truth) - objective(problem, *report.lane_graph));
+    loss.loss = std::max(0.0, objective(problem, truth) - objective(problem, *report.lane_graph));
     if (loss.found) return loss;
     const LearnedFeatures features(scene.scene, problem);
     add_cost_gradient(problem, features, truth, 1.0, gradient);
@@ -277,19 +153,8 @@ LearnedCosts shape_as_learned_costs() {
 }
 
 LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, std::uint64_t seed) {
-    LearnedCosts costs = LearnedCosts::zero(units);
-    auto random = generator_of("learned costs", seed);
-    for (const LearnedPart part : kLearnedParts) {
-        LearnedNetwork& network = costs.of(part);
-        network.linear = linear.of(part).linear;
-        if (units == 0) continue;
-        boost::random::normal_distribution<double> of_hidden(
-            0.0, std::sqrt(2.0 / static_cast<double>(network.linear.size())));
-        for (double& number : network.hidden) number = of_hidden(random);
-        boost::random::normal_distribution<double> of_output(0.0,
-                                                             0.02 / std::sqrt(static_cast<double>(units)));
-        for (double& number : network.output) number = of_output(random);
-    }
+    LearnedCosts costs = linear;
+    add_hidden_units(costs.networks, units, seed);
     // Without colours and confidences in the training these features are 0, and no weight of theirs changes.
     for (const std::string_view evidence : {"color_cost", "same_color", "doubt"}) {
         const std::size_t place = place_of(LearnedPart::edge, evidence);
@@ -301,38 +166,26 @@ LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, st
 
 OptionFields option_fields(RldTrainingOptions& options) {
     options.parameters_hash = tag_of("", options.parameters).hash.value();
-    OptionFields fields = draw_fields(options, false);
-    const OptionFields own{
-        {"", "parameters_hash", &options.parameters_hash},
-        {"--units",
-         "units",
-         &options.units,
-         {0.0, 256.0},
-         "hidden units of each network; 0 for linear costs, a readable weight a feature"},
-        {"--steps", "steps", &options.steps, kCountOrNone, "steps of Adam"},
-        {"--rate", "learning_rate", &options.learning_rate, kPositive, "learning rate, which falls to 0"},
-        {"--margin", "margin.near", &options.margin.near, kNotNegative,
-         "cost by which the true lane has to beat another one, for each edge within 20 m that differs"},
-        {"--far-margin", "margin.far", &options.margin.far, kNotNegative, "the same beyond 20 m"},
-        {"", "margin.near_m", &options.margin.near_m},
-        {"--max-work",
-         "max_work",
-         &options.max_work,
-         {.least = 1.0},
-         "limit of each exact search, in steps of about a nanosecond; then its best lane counts"}};
-    fields.insert(fields.end(), own.begin(), own.end());
-    const OptionFields run = run_fields(options, "--report-every");
-    fields.insert(fields.end(), run.begin(), run.end());
-    return fields;
+    return cost_fields(
+        options, {{"", "parameters_hash", &options.parameters_hash},
+                  {"--margin", "margin.near", &options.margin.near, kNotNegative,
+                   "cost by which the true lane has to beat another one, for each edge within 20 m "
+                   "that differs"},
+                  {"--far-margin", "margin.far", &options.margin.far, kNotNegative, "the same beyond 20 m"},
+                  {"", "margin.near_m", &options.margin.near_m},
+                  {"--max-work",
+                   "max_work",
+                   &options.max_work,
+                   {.least = 1.0},
+                   "limit of each exact search, in steps of about a nanosecond; then its best lane "
+                   "counts"}});
 }
 
 LearnedCosts train_rld(const std::vector<Track>& courses, const RldTrainingOptions& options,
                        const std::function<void(const std::string&)>& say) {
     validate(options);
-    RldTraining training(courses, options, say);
-    learn(training, flat(training.costs()),
-          loop_of(options, kMinDeviation, describe_training(courses, options), say != nullptr));
-    return training.costs();
+    return CostTraining<RldLearner, RldTrainingOptions>(courses, options, initial_costs(options), say)
+        .run(courses);
 }
 
 RldTrainingRun run_rld_training(const std::vector<std::string>& tracks, const RldTrainingOptions& options,
@@ -341,9 +194,7 @@ RldTrainingRun run_rld_training(const std::vector<std::string>& tracks, const Rl
     RldTrainingRun run;
     run.parameters = options.parameters;
     run.parameters.learned_costs = std::make_shared<const LearnedCosts>(train_rld(courses, options, say));
-    auto record = nlohmann::ordered_json::parse(describe_training(courses, options));
-    record["commit"] = provenance().commit;
-    run.record = record.dump();
+    run.record = training_record(courses, options);
     return run;
 }
 

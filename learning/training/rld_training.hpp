@@ -1,20 +1,10 @@
 #pragma once
 
 #include "conelane/rld_solver.hpp"
-#include "detectors/parameters/learned_costs_reader.hpp"
-#include "learning/training/front_scenes.hpp"
+#include "learning/training/cost_training.hpp"
 #include "model/learned_features.hpp"
 
-#include <type_traits>
-
 namespace conelane::learning {
-
-/// Calls `use` with the numbers of all networks, list by list. `costs`: LearnedCosts.
-template <typename Costs, typename Use>
-requires std::same_as<std::remove_const_t<Costs>, LearnedCosts>
-void for_each_block(Costs& costs, const Use& use) {
-    for_each_costs_list(costs, [&](const std::string& /*key*/, auto& numbers) { use(std::span(numbers)); });
-}
 
 /// The truth of a scene as a lane graph of its cones. Precondition: it has a ground truth with open
 /// boundaries.
@@ -34,28 +24,6 @@ struct RldMargin {
 void add_cost_gradient(const LaneGraphProblem& problem, const LearnedFeatures& features,
                        const LaneGraph& graph, double factor, LearnedCosts& gradient);
 
-/// The structured hinge loss of one scene after another: the cost of the truth minus that of its cheapest
-/// rival, with the margin. The rival comes from path-pair, which starts from the truth. If a limit of its
-/// work ends the search, the rival is the best one found. Reuses memory.
-class RldLearner {
-  public:
-    RldLearner(const RldMargin& margin, std::int64_t max_work);
-
-    struct Loss {
-        bool allowed = false;  ///< the truth is a lane graph of the problem; else the rest is unset
-        bool proven = false;   ///< there is no cheaper rival
-        bool found = false;    ///< the truth is its own cheapest rival
-        double hinge = 0.0;    ///< not negative
-    };
-    /// Adds the derivatives of the loss. Precondition: the scene has a ground truth with open boundaries, and
-    /// the parameters have learned costs.
-    Loss add(const AnnotatedScene& scene, const RldParameters& parameters, LearnedCosts& gradient);
-
-  private:
-    RldMargin margin_;
-    std::unique_ptr<RldSolver> solver_;
-};
-
 /// The parameters for learning costs: all other costs are 0, and the limits allow most true lanes, also with
 /// missed cones.
 [[nodiscard]] RldParameters rld_learning_parameters();
@@ -71,24 +39,37 @@ class RldLearner {
                                              std::uint64_t seed);
 
 /// Most are explained by option_fields.
-struct RldTrainingOptions : DrawnTrainingOptions {
-    RldTrainingOptions() {
-        scenes.colored_share = 0.0;
-        scenes.noise_share = 0.0;
-        scenes.highest_rate = 0.6;
-    }
+struct RldTrainingOptions : CostTrainingOptions {
     /// Limits and costs to which the learned ones are added. If they have learned costs, the training begins
     /// with them, and linear ones get hidden units; otherwise it begins with shape_as_learned_costs.
     RldParameters parameters = rld_learning_parameters();
     std::string parameters_hash;  ///< set by option_fields
     RldMargin margin;
-    std::size_t units = 16;
     std::int64_t max_work = 15'000'000;
-    std::size_t steps = 2000;
-    double learning_rate = 5e-3;  ///< of Adam, falls to 0 along a cosine
 };
 /// Those of the record, which determine the costs together with the courses, and how it is run.
 [[nodiscard]] OptionFields option_fields(RldTrainingOptions& options);
+
+/// The structured hinge loss of one scene after another: the cost of the truth minus that of its cheapest
+/// rival, with the margin. The rival comes from path-pair, which starts from the truth. If a limit of its
+/// work ends the search, the rival is the best one found. Reuses memory.
+class RldLearner {
+  public:
+    using Costs = LearnedCosts;
+    explicit RldLearner(const RldTrainingOptions& options);
+    [[nodiscard]] static RldParameters with(RldParameters parameters, const LearnedCosts& costs) {
+        parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
+        return parameters;
+    }
+
+    /// Adds the derivatives of the loss. Precondition: the scene has a ground truth with open boundaries, and
+    /// the parameters have learned costs.
+    CostLoss add(const AnnotatedScene& scene, const RldParameters& parameters, LearnedCosts& gradient);
+
+  private:
+    RldMargin margin_;
+    std::unique_ptr<RldSolver> solver_;
+};
 
 /// Learns costs from courses by the structured hinge loss of RldLearner, with Adam. The same courses, options
 /// (except run_fields) and build give the same costs to the last bit, also if a run was stopped and resumed

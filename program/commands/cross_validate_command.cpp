@@ -25,7 +25,7 @@ OptionFields learning_fields(LearningOptions& learning) {
             {"--front-steps", "", &learning.front_steps, kPositive,
              "of the training of front, as a share of those of the shipped weights"},
             {"--rld-steps", "", &learning.rld_steps, kPositive,
-             "of the training of rld-learned, as a share of those of the shipped costs"}};
+             "of the trainings of rld-learned and rld-strip, as a share of those of the shipped costs"}};
 }
 
 void run(CrossValidateOptions& options) {

@@ -28,8 +28,11 @@ Method method_of(DetectOptions& options) {
     if (!method.is_rld()) options.parameters.require_not_given(who + " has");
     if (options.weights.empty()) return method;
     if (!method.takes_weights())
-        throw InvalidInput("--weights", who + " does not take them: only front and front-warm do");
-    options.run.detector.weights = read_front_weights_bytes(options.weights);
+        throw InvalidInput("--weights", who + " does not take them: only front, front-warm and rld-strip do");
+    options.run.detector.weights = parsed_file(options.weights, [&](const std::string& text) {
+        (void)make_detector(*method.recipe, {.weights = WeightsBytes{text}});
+        return WeightsBytes{text};
+    });
     return method;
 }
 
@@ -129,7 +132,7 @@ void add_detect_command(CLI::App& program) {
     command.add_flag("--candidates", options->run.limits.keep_candidates, "write every enumerated lane too");
     add_parameter_options(command, options->parameters, "the defaults");
     command.add_option("--weights", options->weights,
-                       "weights of front or front-warm: a file that `conelane train front` wrote");
+                       "weights of front, front-warm or rld-strip: a file that `conelane train` wrote");
     command.callback([options] { detect(*options); });
 }
 

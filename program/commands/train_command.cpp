@@ -5,6 +5,7 @@
 #include "learning/training/clc_training.hpp"
 #include "learning/training/front_training.hpp"
 #include "learning/training/rld_training.hpp"
+#include "learning/training/strip_training.hpp"
 #include "program/commands/command_parts.hpp"
 
 #include <cstdio>
@@ -99,6 +100,25 @@ void add_rld(CLI::App& train_command) {
     });
 }
 
+void add_strip(CLI::App& train_command) {
+    struct Options {
+        std::vector<std::string> tracks;
+        StripTrainingOptions training;
+        std::string out;
+    };
+    CLI::App& command = *train_command.add_subcommand(
+        "strip", "learns costs of the strip program with its exact search inside: both boundaries together");
+    auto options = std::make_shared<Options>();
+    command.add_option("--tracks", options->tracks, track_grammar())->required();
+    add_field_options(command, option_fields(options->training));
+    add_output_option(command, "--out", options->out, "costs (JSON)")->required();
+    command.callback([options] {
+        AtomicFile output(options->out);
+        output.stream() << run_strip_training(options->tracks, options->training, say);
+        output.commit();
+    });
+}
+
 struct ClcTrainingOptions {
     ClcTrainingOptions() {
         run.scenes.false_positive_rates = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
@@ -187,6 +207,7 @@ void add_train_command(CLI::App& program) {
     add_output_option(command, "--out", options->out, "weights (JSON)");
     add_front(command);
     add_rld(command);
+    add_strip(command);
     command.callback([options, &command] {
         if (!command.get_subcommands().empty()) return;
         // Checked here: CLI11 would require an option of this command also for its sub-commands.

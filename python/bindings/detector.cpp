@@ -44,7 +44,7 @@ DetectorOptions detector_options(const std::string& name, const py::kwargs& give
         if (recipe == nullptr || key == "nearest") continue;
         if (key == "weights") {
             if (!recipe->takes_weights())
-                throw InvalidInput(key, "is of the detectors front and front-warm, '" + name + "' has none");
+                throw InvalidInput(key, "is of front, front-warm and rld-strip, '" + name + "' has none");
         } else if (!recipe->is_rld()) {
             throw InvalidInput(key, "is of the detectors rld-..., '" + name + "' has none");
         }
@@ -140,8 +140,8 @@ nearest: Number of cones that it uses: the nearest ones ahead of the car.
 parameters: Of the detectors `rld-...`: the name of a parameter set, or a dict of the values that differ from the
     defaults; see `rld_parameters`.
 pairing: Of the detectors `rld-...`: "near_far" or "paper".
-weights: Of the detectors `front` and `front-warm`: weights of your own instead of the shipped ones. The path of a
-    file that ``conelane train front --out FILE`` wrote, or its content as bytes.
+weights: Of the detectors `front`, `front-warm` and `rld-strip`: weights of your own instead of the shipped ones. The
+    path of a file that ``conelane train front`` or ``train strip`` wrote, or its content as bytes.
 Raises ValueError for an unknown name or option, listing the known ones, for an option that the detector does not use, for
     values out of range, and for weights that cannot be read.
 

@@ -1,7 +1,5 @@
 #include "solvers/strip/costs_to_go.hpp"
 
-#include "model/deadline.hpp"
-
 namespace conelane {
 namespace {
 
@@ -24,28 +22,24 @@ std::optional<StopReason> CostsToGo::compute(const StripProblem& problem, const 
     multipliers_.assign(problem.graph.cone_count, 0.0);
     sum_ = 0.0;
     list_turns();
-    reach();
-    list_states();
+    if (!reach(deadline) || !list_states(deadline)) return StopReason::time;
     if (size_ > kMaxStates) return StopReason::memory;
-    moves_.clear();
-    turns_.clear();
-    others_.clear();
-    for (const StripTriangle& triangle : problem.triangles) add_move(triangle);
-    sort_rungs();
+    if (!list_moves(deadline) || !sort_rungs(deadline)) return StopReason::time;
     const auto restart = [&] {
-        costs_.assign(size_, StripProblem::kForbidden);
         relaxed_at_.assign(blocks_.size(), 0);
         changed_at_.assign(blocks_.size(), 0);
         clock_ = 0;
+        return fill(costs_, size_, StripProblem::kForbidden, deadline);
     };
-    restart();
+    if (!restart()) return StopReason::time;
+    std::uint32_t looked = 0;
     int restarts = 0;
     int passes = 0;
     for (bool changed = true; changed;) {
         changed = false;
         for (const std::uint32_t rung : order_) {
+            if (++looked % 32 == 0 && deadline.passed()) return StopReason::time;
             if (!is_stale(rung)) continue;
-            if (clock_ % 32 == 0 && deadline.passed()) return StopReason::time;
             ++clock_;
             if (relax(rung)) {
                 changed_at_[rung] = clock_;
@@ -53,9 +47,9 @@ std::optional<StopReason> CostsToGo::compute(const StripProblem& problem, const 
             }
             relaxed_at_[rung] = clock_;
         }
-        if (++passes % kPassesBeforeLoops != 0 || !changed || !raise_loops()) continue;
+        if (++passes % kPassesBeforeLoops != 0 || !changed || !raise_loops(deadline)) continue;
         if (++restarts > kMaxRestarts) return StopReason::iterations;
-        restart();
+        if (!restart()) return StopReason::time;
     }
     return std::nullopt;
 }
@@ -80,8 +74,8 @@ bool CostsToGo::can_turn(const StripTriangle& t) const {
     return (reached_[t.from][t.is_left ? 0 : 1] & can_precede_[problem_->places_of[cone] + t.out]) != 0;
 }
 
-/// Follows the last edges from the starts.
-void CostsToGo::reach() {
+/// Follows the last edges from the starts. False if the deadline passed.
+bool CostsToGo::reach(const Deadline& deadline) {
     const auto& rungs = problem_->rungs;
     reached_.assign(rungs.size(), {0, 0});
     is_waiting_.assign(rungs.size(), 0);
@@ -93,6 +87,7 @@ void CostsToGo::reach() {
         is_waiting_[r] = 1;
     }
     for (std::size_t k = 0; k < waiting_.size(); ++k) {
+        if (k % 64 == 0 && deadline.passed()) return false;
         is_waiting_[waiting_[k]] = 0;
         for (const StripTriangle& t : problem_->leaving(waiting_[k])) {
             if (!can_turn(t)) continue;
@@ -104,15 +99,17 @@ void CostsToGo::reach() {
                 waiting_.push_back(t.to);
         }
     }
+    return true;
 }
 
-void CostsToGo::list_states() {
+bool CostsToGo::list_states(const Deadline& deadline) {
     size_ = 0;
     blocks_.clear();
     ins_.clear();
     end_costs_.clear();
     ins_of_.assign(1, 0);
     for (std::size_t r = 0; r < problem_->rungs.size(); ++r) {
+        if (r % 64 == 0 && deadline.passed()) return false;
         for (const bool is_left : {true, false}) {
             const std::size_t cone = problem_->rungs[r].of(is_left);
             const std::size_t degree = problem_->degree(cone);
@@ -127,6 +124,29 @@ void CostsToGo::list_states() {
                            static_cast<std::uint32_t>(ins_of_[2 * r + 2] - ins_of_[2 * r + 1])});
         size_ += std::size_t{blocks_.back().rows} * blocks_.back().columns;
     }
+    return true;
+}
+
+bool CostsToGo::list_moves(const Deadline& deadline) {
+    std::size_t turns = 0;
+    std::size_t others = 0;
+    for (std::size_t r = 0; r < blocks_.size(); ++r) {
+        for (const StripTriangle& t : problem_->leaving(r)) {
+            turns += t.is_left ? blocks_[r].rows : blocks_[r].columns;
+            others += t.is_left ? blocks_[r].columns : blocks_[r].rows;
+        }
+    }
+    moves_.clear();
+    turns_.clear();
+    others_.clear();
+    moves_.reserve(problem_->triangles.size());
+    turns_.reserve(turns);
+    others_.reserve(others);
+    for (const StripTriangle& triangle : problem_->triangles) {
+        if (moves_.size() % 64 == 0 && deadline.passed()) return false;
+        add_move(triangle);
+    }
+    return true;
 }
 
 void CostsToGo::add_move(const StripTriangle& t) {
@@ -147,7 +167,7 @@ void CostsToGo::add_move(const StripTriangle& t) {
 }
 
 /// The order in which a search by depth leaves the rungs.
-void CostsToGo::sort_rungs() {
+bool CostsToGo::sort_rungs(const Deadline& deadline) {
     order_.clear();
     is_waiting_.assign(problem_->rungs.size(), 0);  // now: was seen
     const auto enter = [&](std::uint32_t rung) {
@@ -155,7 +175,8 @@ void CostsToGo::sort_rungs() {
     };
     for (std::uint32_t start = 0; start < problem_->rungs.size(); ++start) {
         if (problem_->rungs[start].may_start) enter(start);
-        while (!stack_.empty()) {
+        for (std::uint32_t steps = 0; !stack_.empty(); ++steps) {
+            if (steps % 256 == 0 && deadline.passed()) return false;
             auto& [rung, next] = stack_.back();
             if (next < problem_->triangles_of[rung + 1]) {
                 const std::uint32_t k = next++;
@@ -166,6 +187,7 @@ void CostsToGo::sort_rungs() {
             }
         }
     }
+    return true;
 }
 
 /// Whether a rung that it leads to has changed since it was relaxed.
@@ -239,28 +261,30 @@ std::optional<StripStep> CostsToGo::cheapest(const StripState& state) const {
 }
 
 /// From the rungs that still change along the cheapest steps: whether a loop of negative cost was found.
-bool CostsToGo::raise_loops() {
+bool CostsToGo::raise_loops(const Deadline& deadline) {
     bool found = false;
     for (const std::uint32_t rung : order_) {
         if (!is_stale(rung)) continue;
+        if (deadline.passed()) return false;
         const Block& block = blocks_[rung];
         const double* const costs = costs_.data() + block.first;
         const auto least = static_cast<std::size_t>(
             std::min_element(costs, costs + std::size_t{block.rows} * block.columns) - costs);
         found = raise_loop_from({rung, static_cast<std::uint16_t>(least / block.columns),
-                                 static_cast<std::uint16_t>(least % block.columns)}) ||
+                                 static_cast<std::uint16_t>(least % block.columns)},
+                                deadline) ||
                 found;
     }
     return found;
 }
 
-bool CostsToGo::raise_loop_from(StripState state) {
+bool CostsToGo::raise_loop_from(StripState state, const Deadline& deadline) {
     std::vector<StripStep> steps;
     std::vector<std::size_t> visited{index(state)};
     const std::size_t most = 4 * problem_->graph.cone_count + 8;
     while (visited.size() < most) {
         const std::optional<StripStep> best = cheapest(state);
-        if (!best) return false;
+        if (!best || (steps.size() % 64 == 63 && deadline.passed())) return false;
         steps.push_back(*best);
         state = best->to;
         const auto before = std::ranges::find(visited, index(state));

@@ -1,8 +1,21 @@
 #pragma once
 
+#include "model/deadline.hpp"
 #include "model/strip_problem.hpp"
 
 namespace conelane {
+
+/// Makes `size` numbers of the same value; false if the deadline passed.
+template <typename Number>
+[[nodiscard]] bool fill(std::vector<Number>& numbers, std::size_t size, Number value,
+                        const Deadline& deadline) {
+    constexpr std::size_t kBlock = 1 << 15;
+    numbers.clear();
+    numbers.reserve(size);
+    while (numbers.size() < size && !deadline.passed())
+        numbers.insert(numbers.end(), std::min(kBlock, size - numbers.size()), value);
+    return numbers.size() == size;
+}
 
 /// A rung, and the last edges of both boundaries as positions among those that they may have there.
 struct StripState {
@@ -84,17 +97,18 @@ class CostsToGo {
         return std::span(ins_).subspan(begin(rung, is_left),
                                        begin(rung + (is_left ? 0 : 1), !is_left) - begin(rung, is_left));
     }
-    void reach();
+    [[nodiscard]] bool reach(const Deadline& deadline);
     void list_turns();
     [[nodiscard]] bool can_turn(const StripTriangle& triangle) const;
-    void list_states();
+    [[nodiscard]] bool list_states(const Deadline& deadline);
+    [[nodiscard]] bool list_moves(const Deadline& deadline);
     void add_move(const StripTriangle& triangle);
-    void sort_rungs();
+    [[nodiscard]] bool sort_rungs(const Deadline& deadline);
     [[nodiscard]] bool is_stale(std::uint32_t rung) const;
     [[nodiscard]] bool relax(std::uint32_t rung);
     void relax(const StripTriangle& triangle, const Move& move);
-    [[nodiscard]] bool raise_loops();
-    [[nodiscard]] bool raise_loop_from(StripState state);
+    [[nodiscard]] bool raise_loops(const Deadline& deadline);
+    [[nodiscard]] bool raise_loop_from(StripState state, const Deadline& deadline);
     [[nodiscard]] std::optional<StripStep> cheapest(const StripState& state) const;
     [[nodiscard]] std::size_t entered(const StripStep& step) const {
         return problem_->entered(problem_->triangles[step.triangle]);

@@ -1,8 +1,8 @@
 #include "solvers/strip/strip_solver.hpp"
 
-#include "model/deadline.hpp"
 #include "solvers/strip/costs_to_go.hpp"
 
+#include <deque>
 #include <exception>
 #include <queue>
 
@@ -49,19 +49,22 @@ class StripSolver::Search {
   private:
     void search(const Deadline& deadline, StripReport& report) {
         cones_.clear();
-        expanded_.assign(to_go_.size(), -1);
+        if (!fill(expanded_, to_go_.size(), std::int32_t{-1}, deadline))
+            return stop(StopReason::time, report);
         add_starts();
         const std::size_t wanted = std::max<std::size_t>(1, options_->lanes);
         std::size_t popped = 0;
+        std::size_t most = options_->max_labels;
         while (!open_.empty()) {
             const auto [estimate, negated] = open_.top();
             const std::int32_t label = -negated;
             const double bound = lanes_.empty() ? estimate : lanes_.front().cost;
             if (!lanes_.empty() && estimate > lanes_.front().cost + options_->worst_of_lanes) break;
             if (popped++ % 64 == 0 && deadline.passed()) return stop(StopReason::time, report, bound);
-            if (labels_.size() > options_->max_labels) return stop(StopReason::iterations, report, bound);
+            if (labels_.size() > most) return stop(StopReason::iterations, report, bound);
             open_.pop();
             if (at(label).is_end) {
+                if (lanes_.empty()) most = std::min(most, labels_.size() + options_->labels_of_others);
                 if (add_lane(label) && lanes_.size() >= wanted) break;
                 continue;
             }
@@ -102,7 +105,8 @@ class StripSolver::Search {
         return labels_[static_cast<std::size_t>(label)];
     }
     [[nodiscard]] std::uint64_t* cones_of(std::int32_t label) {
-        return cones_.data() + static_cast<std::size_t>(label) * words_;
+        const auto number = static_cast<std::size_t>(label);
+        return cones_[number / kBlock].data() + number % kBlock * words_;
     }
     [[nodiscard]] bool uses(std::int32_t label, std::size_t cone) {
         return (cones_of(label)[cone / 64] >> (cone % 64) & 1U) != 0;
@@ -115,7 +119,7 @@ class StripSolver::Search {
         const auto number = static_cast<std::int32_t>(labels_.size());
         label.parent = parent;
         labels_.push_back(label);
-        cones_.resize(cones_.size() + words_, 0);
+        if (labels_.size() > cones_.size() * kBlock) cones_.emplace_back(kBlock * words_, 0);
         if (parent >= 0) std::copy_n(cones_of(parent), words_, cones_of(number));
         for (const std::size_t cone : entered) cones_of(number)[cone / 64] |= std::uint64_t{1} << (cone % 64);
         open_.emplace(estimate, -number);
@@ -231,12 +235,14 @@ class StripSolver::Search {
     const StripProblem* problem_ = nullptr;
     const StripOptions* options_ = nullptr;
     CostsToGo to_go_;
-    std::vector<Label> labels_;
-    std::vector<std::uint64_t> cones_;  ///< the cones that a label uses, a bit each, words_ a label
+    // These grow by blocks: a copy of all would take milliseconds.
+    static constexpr std::size_t kBlock = 1024;
+    std::deque<Label> labels_;
+    std::vector<std::vector<std::uint64_t>> cones_;  ///< of a block: a bit for each cone, words_ a label
     std::size_t words_ = 0;
     /// Estimate and negated number: of equal estimates the later label first, which is nearer to an end.
     using Open = std::pair<double, std::int32_t>;
-    std::priority_queue<Open, std::vector<Open>, std::greater<>> open_;
+    std::priority_queue<Open, std::deque<Open>, std::greater<>> open_;
     std::vector<std::int32_t> expanded_;  ///< by state the label that was expanded last
     std::vector<FoundLane> lanes_;
 };

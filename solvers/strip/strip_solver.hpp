@@ -15,9 +15,10 @@ struct StripReport : RldReport {
 
 struct StripOptions {
     SolveLimits limits = {};
-    std::size_t lanes = 1;               ///< number of different lanes wanted; at least 1
-    std::size_t max_labels = 2'000'000;  ///< then it stops: iterations
-    double worst_of_lanes = 1e300;       ///< lanes that cost so much more than the best are not wanted
+    std::size_t lanes = 1;                     ///< number of different lanes wanted; at least 1
+    std::size_t max_labels = 2'000'000;        ///< then it stops: iterations
+    std::size_t labels_of_others = 2'000'000;  ///< at most so many more for the lanes after the best
+    double worst_of_lanes = 1e300;             ///< lanes that cost so much more than the best are not wanted
 };
 
 /// The exact search. A state is the last edge of each boundary; its rung is the head. Costs to go are exact

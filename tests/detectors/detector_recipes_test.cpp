@@ -81,7 +81,8 @@ TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParam
     EXPECT_THAT(training_courses("clc"), Not(Contains("circle")));
     EXPECT_THAT(training_courses("delaunay-beam"), Contains("fsd_1"));
     EXPECT_THAT(training_courses("rld-shape"), Contains("fsd_6"));
-    EXPECT_THAT(training_courses("rld-learned"), AllOf(Contains("fsd_6"), Contains("kidney@4")));
+    for (const char* learned : {"rld-learned", "rld-strip"})
+        EXPECT_THAT(training_courses(learned), AllOf(Contains("fsd_6"), Contains("kidney@4")));
     for (const char* const none : {"rld-pair", "rld-context", "no detector"})
         EXPECT_THAT(training_courses(none), IsEmpty()) << none;
 }

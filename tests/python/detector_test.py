@@ -214,7 +214,7 @@ class Refusals(unittest.TestCase):
             ("pairing: 'far' is not one of near_far, paper", lambda: conelane.Detector("rld-pair", pairing="far")),
             ("parameters: is of the detectors rld-..., 'clc' has none",
              lambda: conelane.Detector("clc", parameters="context")),
-            ("weights: is of the detectors front and front-warm, 'clc' has none",
+            ("weights: is of front, front-warm and rld-strip, 'clc' has none",
              lambda: conelane.Detector("clc", weights=WEIGHTS)),
             ("weights: is neither the path nor the bytes of a file", lambda: conelane.Detector("front", weights=3)),
             ("weights: nowhere.json: cannot be read", lambda: conelane.Detector("front", weights="nowhere.json")),

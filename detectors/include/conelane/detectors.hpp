@@ -56,8 +56,8 @@ struct DetectorOptions {
     std::optional<Pairing> pairing = {};               ///< rld-...: replaces the pairing of the parameters
     /// All detectors: answer only for this many nearest cones ahead. At least 1.
     std::optional<std::size_t> nearest = {};
-    /// front and front-warm: weights of your own instead of the shipped ones. The path of a file that
-    /// `conelane train front --out FILE` wrote, or its content.
+    /// front, front-warm and rld-strip: weights of your own instead of the shipped ones. The path of a file
+    /// that `conelane train front` or `conelane train strip` wrote, or its content.
     std::optional<std::variant<std::filesystem::path, WeightsBytes>> weights = {};
 };
 

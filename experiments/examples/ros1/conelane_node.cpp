@@ -1,10 +1,10 @@
 // A node for ROS 1: cones in, the path to drive out.
 //
-//   in   cones         eufs_msgs/ConeArrayWithCovariance or visualization_msgs/MarkerArray, in any frame that
-//   TF knows out  path          nav_msgs/Path in the map's frame, with the stamp of the cones; empty where
-//   there is no path out  markers       visualization_msgs/MarkerArray: both boundaries; dark as far as they
-//   are trusted out  /diagnostics  diagnostic_msgs/DiagnosticArray: the state of the plan, or what is wrong
-//   with the cones
+// Takes `cones`, eufs_msgs/ConeArrayWithCovariance, in any frame that TF knows. Publishes in the map's frame,
+// with the stamp of the cones:
+// - `path`, nav_msgs/Path: empty where there is no path
+// - `markers`, visualization_msgs/MarkerArray: both boundaries, dark as far as they are trusted
+// - `/diagnostics`, diagnostic_msgs/DiagnosticArray: state of the plan, or what is wrong with the cones
 //
 // Private parameters: mission, detector, laps, map_frame, car_frame, time_limit_ms, transform_wait_s.
 

@@ -65,6 +65,11 @@ const std::map<std::string, Kind>& kinds() {
           [](const std::string& text, const std::string& training) {
               return learned_costs_json(*parse_learned_costs(text), training);
           }}},
+        {"strip",
+         {strip_costs_json(StripCosts::zero(1), kTraining),
+          [](const std::string& text, const std::string& training) {
+              return strip_costs_json(*parse_strip_costs(text), training);
+          }}},
         {"net",
          {rank_net_json(small_network(), kTraining),
           [](const std::string& text, const std::string& training) {
@@ -118,7 +123,8 @@ TEST(WeightsFile, TheShippedOnesKeepEveryByte) {
         {"net", "graph_search/weights/rank_net_paper.json", kRankNetPaperFile},
         {"net", "graph_search/weights/rank_net_extended.json", kRankNetExtendedFile},
         {"steps", "graph_search/weights/step_scores.json", kStepScoresFile},
-        {"costs", "detectors/parameters/learned.weights.json", kLearnedWeightsFile}};
+        {"costs", "detectors/parameters/learned.weights.json", kLearnedWeightsFile},
+        {"strip", "detectors/parameters/strip.weights.json", kStripWeightsFile}};
     for (const auto& [kind, path, embedded] : shipped) {
         const std::string text = source_text(path);
         EXPECT_TRUE(embedded == text) << path;

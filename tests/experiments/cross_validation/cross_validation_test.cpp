@@ -23,7 +23,7 @@ std::vector<std::string> courses_learned(const std::string& weights) {
 class CrossValidation : public ProgramFixture {};
 
 TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
-    const Outcome outcome = run_well(kFolds + "front,clc,delaunay-beam,rld-pair,rld-learned");
+    const Outcome outcome = run_well(kFolds + "front,clc,delaunay-beam,rld-pair,rld-learned,rld-strip");
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/step_scores.json"))),
                 testing::ElementsAre("curvy", "straight"));
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/rank_net_extended.json"))),
@@ -40,7 +40,7 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
     const std::vector<AnnotatedScene> scenes = read_scenes(path("cv/scenes.scenes.jsonl"));
     RunOptions options;
     options.limits.time_limit_ms = 400.0;
-    for (const std::string detector : {"clc", "front", "rld-learned"}) {
+    for (const std::string detector : {"clc", "front", "rld-learned", "rld-strip"}) {
         const std::vector<LaneRecord> lanes = read_lanes(path("cv/" + detector + ".lanes.jsonl"));
         ASSERT_EQ(lanes.size(), scenes.size());
         for (std::size_t i = 0; i < scenes.size(); ++i) {

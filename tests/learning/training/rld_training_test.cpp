@@ -132,7 +132,9 @@ TEST(RldTraining, LowersTheLossOfAScene) {
     const FrontScenes scenes(courses(), quick().scenes, 1);
     RldParameters parameters = rld_learning_parameters();
     LearnedCosts costs = with_hidden_units(shape_as_learned_costs(), 2, 1);
-    RldLearner learner({}, 5'000'000);
+    RldTrainingOptions options;
+    options.max_work = 5'000'000;
+    RldLearner learner(options);
     int lowered = 0;
     int tried = 0;
     int allowed = 0;
@@ -140,15 +142,15 @@ TEST(RldTraining, LowersTheLossOfAScene) {
         for (const AnnotatedScene& scene : scenes.draw(number).scenes) {
             LearnedCosts gradient = LearnedCosts::zero(2);
             parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
-            const RldLearner::Loss loss = learner.add(scene, parameters, gradient);
+            const CostLoss loss = learner.add(scene, parameters, gradient);
             allowed += loss.allowed ? 1 : 0;
-            if (!loss.allowed || loss.found || loss.hinge < 0.1) continue;
+            if (!loss.allowed || loss.found || loss.loss < 0.1) continue;
             ++tried;
             LearnedCosts next = costs;
             set(next, flat(costs) - 1e-4 * flat(gradient));
             parameters.learned_costs = std::make_shared<const LearnedCosts>(next);
             LearnedCosts ignored = LearnedCosts::zero(2);
-            if (learner.add(scene, parameters, ignored).hinge < loss.hinge) ++lowered;
+            if (learner.add(scene, parameters, ignored).loss < loss.loss) ++lowered;
         }
     }
     EXPECT_GT(allowed, 10);
