@@ -224,11 +224,12 @@ TEST_F(OutsideDetectors, AStoppedComparisonResumesAndAChangedCommandIsAnother) {
 
 TEST_F(OutsideDetectors, ShardsAndThreadsGiveTheAnswersOfOneRun) {
     const std::string card = R"({"name": "A stranger", "licence": "MIT", "colour_used": false})";
-    run_well(kLaps + std::string("first --methods clc"));
+    const std::string never_stopped = " --time-limit 60000";
+    run_well(kLaps + std::string("first --methods clc") + never_stopped);
     std::filesystem::copy(path("first/clc.lanes.jsonl"), path("theirs.lanes.jsonl"));
     file_with(card, "theirs.method.json");
     const std::string detectors =
-        " --methods 'lanes:file=theirs.lanes.jsonl,exec:other=" + child("ids") + "'";
+        never_stopped + " --methods 'lanes:file=theirs.lanes.jsonl,exec:other=" + child("ids") + "'";
     run_well(kLaps + std::string("whole") + detectors);
     for (const char* shard : {"0", "1"})
         run_well(kLaps + std::string("part") + shard + detectors + " --shard " + shard + "/2");

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <ctime>
+#include <vector>
 
 #include <sys/syscall.h>
 #include <sys/time.h>
@@ -17,7 +17,8 @@ namespace conelane::tests {
 struct ClockLooks {
     std::int64_t monotonic = 0;
     std::int64_t time_of_day = 0;
-    double max_gap_ms = 0.0;  ///< processor time of this thread between two readings of the monotonic clock
+    /// Gets the processor time of this thread between each two readings of the monotonic clock.
+    std::vector<double>* gaps_ms = nullptr;
     double last_look_ms = 0.0;
     std::int64_t away_at = 0;  ///< the reading of the monotonic clock from which it is ahead; 0: none
     std::int64_t away_s = 0;   ///< by how much
@@ -36,7 +37,7 @@ inline double thread_cpu_ms() {
 /// A reading of the clock, and the end of a call.
 inline void note_look() {
     const double now_ms = thread_cpu_ms();
-    clock_looks.max_gap_ms = std::max(clock_looks.max_gap_ms, now_ms - clock_looks.last_look_ms);
+    if (clock_looks.gaps_ms != nullptr) clock_looks.gaps_ms->push_back(now_ms - clock_looks.last_look_ms);
     clock_looks.last_look_ms = thread_cpu_ms();
 }
 inline void forget_looks() {
