@@ -254,7 +254,8 @@ std::vector<double> objectives(const std::vector<LaneRecord>& records) {
 /// The child solves its programs with CBC, so its optima are those of rld-pair.
 TEST_F(OutsideDetectors, ASolverFromOutsideIsRldAtEachConeSetSize) {
     run_well(
-        "sweep --tracks generated:circle --condition paper --sizes 6,8 --every 30 --fp 0.2 --out r "
+        "sweep --tracks generated:circle --condition paper --sizes 6,8 --every 30 --fp 0.2 --time-limit "
+        "60000 --out r "
         "--methods rld-pair 'solver:child=" +
         solver_child() + "' 'solver:printed/paper=" + solver_child() + " once {mps} {sol}'");
     for (const std::string size : {".n006", ".n008"}) {
