@@ -272,7 +272,7 @@ class Threads(unittest.TestCase):
         lane = []
 
         def search():
-            lane.append(conelane.Detector("rld-pair").detect(cones, ORIGIN, time_limit_ms=300.0))
+            lane.append(conelane.Detector("rld-pair").detect(cones, ORIGIN, time_limit_ms=2000.0))
             searched.set()
 
         interval = sys.getswitchinterval()

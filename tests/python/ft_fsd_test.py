@@ -242,7 +242,7 @@ class Frames(unittest.TestCase):
             self.assertEqual(planner.frame, "map", f"call {seed}")
 
     def test_a_pose_that_freezes_costs_no_memory(self):
-        planner = PathPlanner(MissionTypes.trackdrive)
+        planner = PathPlanner(MissionTypes.trackdrive, time_limit_ms=10_000.0)
         frozen = 0
         for i, x in enumerate(np.arange(0.0, 40.0, 0.6)):
             place = x if i % 12 < 8 else 0.6 * (i - i % 12 + 7)
