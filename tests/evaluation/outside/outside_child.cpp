@@ -116,7 +116,8 @@ int main(int argument_count, char** arguments) {
             continue;
         }
         const conelane::Scene scene = scene_of(input);
-        const json right = answer_to(scene, detector->detect(scene, {.time_limit_ms = 60'000.0}), words.at(0));
+        const json right =
+            answer_to(scene, detector->detect(scene, {.time_limit_ms = 60'000.0}), words.at(0));
         const bool at_fault =
             words.size() > 3 && ++count == std::stoi(words[2]) && !std::filesystem::exists(words[3]);
         if (at_fault) {
