@@ -1,7 +1,7 @@
 #include "conelane/rld_detector.hpp"
 
 #include "conelane/solve_scene.hpp"
-#include "detectors/strip_detector.hpp"
+#include "detectors/lane_status.hpp"
 #include "model/deadline.hpp"
 #include "model/valid_scene_problem.hpp"
 

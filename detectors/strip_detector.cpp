@@ -1,5 +1,6 @@
 #include "detectors/strip_detector.hpp"
 
+#include "detectors/lane_status.hpp"
 #include "model/deadline.hpp"
 
 namespace conelane {
@@ -60,12 +61,6 @@ class StripDetector : public LaneDetector {
 };
 
 }  // namespace
-
-LaneStatus lane_status(SolveStatus status) {
-    if (status == SolveStatus::infeasible) return LaneStatus::none;
-    if (status == SolveStatus::stopped) return LaneStatus::stopped;
-    return status == SolveStatus::error ? LaneStatus::error : LaneStatus::found;
-}
 
 StripTrust strip_trust(const StripProblem& problem, const Scene& scene, std::span<const StripLane> lanes) {
     struct Other {

@@ -6,9 +6,6 @@
 
 namespace conelane {
 
-/// What the status of a solver is for a detector: a lane, optimal or not, is found.
-[[nodiscard]] LaneStatus lane_status(SolveStatus status);
-
 /// A lane that costs so much more is e times less likely. Below 1, because lanes that differ in one cone may
 /// both be usable; set by the FSD courses, which the costs had not seen.
 inline constexpr double kStripTemperature = 0.35;
