@@ -47,15 +47,15 @@ TEST_P(Interrupt, IsSeenByTheProgramsHandler) {
     interrupts = 0;
     const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
     const LaneGraphProblem problem = make_problem(tests::random_scene(1, 30), {}, EdgeExtent::all_pairs);
-    const auto interrupt_after = [](int wait_ms) {
-        return std::jthread([wait_ms] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
-            kill(getpid(), SIGINT);
-        });
-    };
     {
-        const std::jthread first = interrupt_after(100);
-        const std::jthread second = interrupt_after(200);
+        // The second is sent when the first was seen: two that wait for the process are one.
+        const std::jthread interrupter([] {
+            for (int sent = 0; sent < 2; ++sent) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(100));
+                kill(getpid(), SIGINT);
+                while (interrupts <= sent) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+        });
         const RldReport report = solver->solve(problem, {.limits = {400.0}});
         EXPECT_NE(report.status, SolveStatus::error) << report.message;
     }

@@ -70,15 +70,18 @@ class ProgramFixture : public FileTest {
         return holds();
     }
 
-    /// Waits until the condition holds or the program ends. Whether the condition holds.
+    /// Waits until the condition holds or the program ends. Whether the condition held: a file may come and
+    /// go.
     static bool wait_until(pid_t started, const std::function<bool()>& holds) {
         siginfo_t state{};
+        bool held = false;
         (void)wait_until([&] {
-            return holds() ||
+            held = held || holds();
+            return held ||
                    ::waitid(P_PID, static_cast<id_t>(started), &state, WEXITED | WNOHANG | WNOWAIT) != 0 ||
                    state.si_pid != 0;
         });
-        return holds();
+        return held;
     }
 
     [[nodiscard]] static std::vector<std::string> lines_of(const std::string& text) {

@@ -10,7 +10,8 @@
 
 // Fakes the clocks of the whole program, of the C library and of every library that it links: a test program
 // includes this once. The monotonic clock is real, but can be ahead by a requested time, as if the processor
-// had been away; the time of day jumps by an hour, forth and back, at each reading.
+// had been away, or advance by the same step at each reading; the time of day jumps by an hour, forth and
+// back, at each reading.
 
 namespace conelane::tests {
 
@@ -22,6 +23,7 @@ struct ClockLooks {
     double last_look_ms = 0.0;
     std::int64_t away_at = 0;  ///< the reading of the monotonic clock from which it is ahead; 0: none
     std::int64_t away_s = 0;   ///< by how much
+    std::int64_t step_ns = 0;  ///< of the monotonic clock at each reading; 0: it is real
 };
 inline thread_local ClockLooks clock_looks;
 
@@ -57,6 +59,8 @@ extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
         ++clock_looks.monotonic;
         if (clock_looks.away_at > 0 && clock_looks.monotonic >= clock_looks.away_at)
             time->tv_sec += clock_looks.away_s;
+        if (const std::int64_t now_ns = clock_looks.monotonic * clock_looks.step_ns; now_ns > 0)
+            *time = {now_ns / 1'000'000'000, now_ns % 1'000'000'000};
         conelane::tests::note_look();
     }
     return 0;
