@@ -1,17 +1,16 @@
 #include "detectors/recipe.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/drivable/drivable_answers.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "detectors/strip_detector.hpp"
-#include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/shared/json_reader.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <functional>
-#include <map>
 
 namespace conelane {
 namespace {
@@ -41,30 +40,8 @@ std::unique_ptr<LaneDetector> paper_clc() {
     return make_clc_detector(paper_clc_options());
 }
 
-/// The recipe of a detector with a struct of parameters, from their fields.
-template <typename Parameters, std::span<const ParameterField<Parameters>> (*fields)(),
-          std::unique_ptr<LaneDetector> (*make)(const Parameters&)>
-constexpr TunedRecipe tuned() {
-    return {[] {
-                std::vector<TunableParameter> all;
-                for (const ParameterField<Parameters>& field : fields()) {
-                    all.push_back({field.key, field.unit, field.lowest, field.highest, field.logarithmic,
-                                   field.description, Parameters{}.*field.value});
-                }
-                return all;
-            },
-            [](std::span<const double> values) {
-                Parameters parameters;
-                for (std::size_t i = 0; i < values.size(); ++i) parameters.*fields()[i].value = values[i];
-                return make(parameters);
-            }};
-}
-
 /// Courses in view when the costs of the shape were set by hand.
 constexpr std::string_view kShapeCourses[]{"fsd_1", "fsd_2", "fsd_4", "fsd_5", "fsd_6", "fsd_7", "fsd_9"};
-/// Courses named by the records of the parameters.
-constexpr std::string_view kDelaunayBeamCourses[]{
-    "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
 
 constexpr DetectorRecipe kRecipes[]{
     {{"front",
@@ -115,12 +92,6 @@ constexpr DetectorRecipe kRecipes[]{
       ColorUse::by_weight},
      LearnedFrom::nothing(),
      RldRecipe{.make_solver = path_pair, .cones = {kRldConeSet, kRldContext}}},
-    {{"delaunay-beam",
-      "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
-      "the lowest cost",
-      ClosedLanes::never, ColorUse::used},
-     LearnedFrom({}, kDelaunayBeamCourses),
-     tuned<DelaunayBeamParameters, delaunay_beam_fields, make_delaunay_beam_detector>()},
 };
 
 /// The courses that the record of a weight file names.
@@ -215,24 +186,6 @@ std::set<std::string> training_courses(const DetectorRecipe& recipe) {
     return courses;
 }
 
-std::vector<double> shipped_values(const DetectorRecipe& recipe) {
-    std::map<std::string, double, std::less<>> stored;
-    JsonReader json(parameter_file(recipe.name), "parameters");
-    json.object([&](const std::string& key) {
-        if (!stored.emplace(key, json.number()).second) throw InvalidInput(key, "is there twice");
-    });
-    json.require_end();
-    std::vector<double> values;
-    for (const TunableParameter& parameter : recipe.tuned()->parameters()) {
-        const auto found = stored.find(parameter.key);
-        if (found == stored.end()) throw InvalidInput(std::string(parameter.key), "is missing");
-        values.push_back(found->second);
-        stored.erase(found);
-    }
-    if (!stored.empty()) throw InvalidInput(stored.begin()->first, "is not a parameter");
-    return values;
-}
-
 DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options) {
     if (!recipe.is_rld()) {
         options.rld_parameters.reset();
@@ -260,8 +213,6 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
         StripParameters made = driving_strip_parameters();
         made.costs = strip_costs_of(options.weights);
         detector = make_strip_detector(std::move(made));
-    } else if (const auto* tuned_recipe = recipe.tuned()) {
-        detector = tuned_recipe->make(shipped_values(recipe));
     } else {
         detector = std::get<OtherRecipe>(recipe.how).make();
     }

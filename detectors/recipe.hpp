@@ -34,25 +34,6 @@ struct FrontRecipe {
 /// `rld-strip`, whose costs may be replaced.
 struct StripRecipe {};
 
-/// A number that tuning changes.
-struct TunableParameter {
-    std::string_view key;
-    std::string_view unit;
-    double lowest;
-    double highest;
-    bool logarithmic;  ///< equal steps are equal ratios
-    std::string_view description;
-    double start;  ///< set by hand, so independent of the courses that a tuning holds out
-};
-
-/// A detector of numbers that are tuned without knowledge of their meaning. The shipped ones are in
-/// parameters/NAME.json; parameters/NAME.record.json has the scenes on which `conelane tune` found them.
-struct TunedRecipe {
-    std::vector<TunableParameter> (*parameters)();
-    /// The detector of these values, in the order of the parameters.
-    std::unique_ptr<LaneDetector> (*make)(std::span<const double> values);
-};
-
 /// Any other detector: the function that makes it.
 struct OtherRecipe {
     std::unique_ptr<LaneDetector> (*make)();
@@ -87,7 +68,7 @@ inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile}
 /// How to make a detector.
 struct DetectorRecipe : DetectorInfo {
     LearnedFrom learned_from;
-    std::variant<RldRecipe, FrontRecipe, StripRecipe, TunedRecipe, OtherRecipe> how;
+    std::variant<RldRecipe, FrontRecipe, StripRecipe, OtherRecipe> how;
 
     /// Whether it optimises the RLD objective.
     [[nodiscard]] bool is_rld() const { return std::holds_alternative<RldRecipe>(how); }
@@ -95,8 +76,6 @@ struct DetectorRecipe : DetectorInfo {
     [[nodiscard]] bool takes_weights() const {
         return std::holds_alternative<FrontRecipe>(how) || std::holds_alternative<StripRecipe>(how);
     }
-    /// Null if it has no numbers to tune.
-    [[nodiscard]] const TunedRecipe* tuned() const { return std::get_if<TunedRecipe>(&how); }
 };
 
 /// The detectors of the library.
@@ -108,9 +87,6 @@ struct DetectorRecipe : DetectorInfo {
 /// The courses that a detector has learned from, by the names of the tracks: those in the records of its
 /// weights, and those in view when its parameters were set. Empty if it has learned from none.
 [[nodiscard]] std::set<std::string> training_courses(const DetectorRecipe& recipe);
-
-/// The shipped values of a tuned detector, in the order of its parameters.
-[[nodiscard]] std::vector<double> shipped_values(const DetectorRecipe& recipe);
 
 /// The options without those that the detector does not use: for one set of options and several detectors.
 [[nodiscard]] DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options);

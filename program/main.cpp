@@ -111,12 +111,14 @@ struct Removed {
     std::string_view word;     ///< or a part of a list
     std::string_view instead;
 };
-constexpr std::array<Removed, 12> kRemoved{{
+constexpr std::array<Removed, 14> kRemoved{{
     {"", "rld-shape-context", "rld-context with --params shape"},
     {"", "astar-lane", "clc"},
     {"", "clc-no-beam", "clc"},
     {"", "clc-longest", "clc"},
     {"", "clc-delaunay", "clc-paper"},
+    {"", "delaunay-beam", "clc"},
+    {"", "tune-method", "tune, for the parameters of RLD"},
     {"study", "anytime", "study backends --solvers path-pair --sizes all --gap-limits"},
     {"study", "confidence-and-colour", "compare --confidence and --color"},
     {"study", "features", "instances, whose index.csv has the features of each problem"},
@@ -142,10 +144,11 @@ void refuse_removed_words(std::span<const char* const> words) {
 
 /// The words of the command line, an old name replaced by the new words.
 std::vector<const char*> current_words(std::span<char* const> arguments) {
-    static const std::vector<OldName> kOldNames{
-        {"sweep", {"compare", "--by-size"}}, {"merge", {"compare", "--merge"}},
-        {"tune-method", {"tune"}},           {"solvers", {"methods", "--solvers"}},
-        {"import-solution", {"export"}},     {"cross-check", {"study", "cross-check"}}};
+    static const std::vector<OldName> kOldNames{{"sweep", {"compare", "--by-size"}},
+                                                {"merge", {"compare", "--merge"}},
+                                                {"solvers", {"methods", "--solvers"}},
+                                                {"import-solution", {"export"}},
+                                                {"cross-check", {"study", "cross-check"}}};
     std::vector<const char*> words(arguments.begin(), arguments.end());
     if (words.size() < 2) return words;
     const auto old = std::ranges::find(kOldNames, std::string_view(words[1]), &OldName::name);

@@ -132,8 +132,7 @@ ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs
             if (!options.colors_from.empty()) learning.without_colors = options.colors_from / family.name;
             fs::create_directories(folds / family.name);
             for (const Method& method : options.comparison.methods) {
-                if (method.learner != nullptr)
-                    method.learner->learn(*method.recipe, learning, folds / family.name);
+                if (method.learner != nullptr) method.learner->learn(learning, folds / family.name);
             }
         }
     };

@@ -8,7 +8,6 @@
 #include "learning/training/front_training.hpp"
 #include "learning/training/rld_training.hpp"
 #include "learning/training/strip_training.hpp"
-#include "learning/tuning/detector_tuning.hpp"
 #include "learning/tuning/rld_tuning.hpp"
 
 namespace conelane::experiments {
@@ -58,7 +57,7 @@ void learn_steps(const LearningOptions& options, const fs::path& file) {
     write(file, run_step_training(run).file);
 }
 
-void learn_clc(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
+void learn_clc(const LearningOptions& options, const fs::path& folder) {
     if (!fs::exists(folder / kStepScores)) learn_steps(options, folder / kStepScores);
     if (fs::exists(folder / kExtendedNet)) return;
     const std::string steps = text_of(folder / kStepScores);
@@ -80,8 +79,7 @@ void learn_clc(const DetectorRecipe& /*recipe*/, const LearningOptions& options,
     write(folder / kExtendedNet, run_training(run).file);
 }
 
-void learn_clc_paper(const DetectorRecipe& /*recipe*/, const LearningOptions& options,
-                     const fs::path& folder) {
+void learn_clc_paper(const LearningOptions& options, const fs::path& folder) {
     if (fs::exists(folder / kPaperNet)) return;
     TrainingRunOptions run = network_options(options);
     run.candidates.max_per_scene = 120;
@@ -119,7 +117,8 @@ Learned load_paper_clc(const DetectorRecipe& /*recipe*/, const fs::path& folder)
     return made(clc);
 }
 
-// Tuned methods have at most a dozen numbers, so every fourth pose is enough.
+// The weights of the RLD objective with the costs of the lane's shape: a dozen numbers, so every fourth pose
+// is enough.
 
 SceneSet scenes_to_tune_on(const LearningOptions& options) {
     constexpr double kPoses = 4.0;
@@ -127,35 +126,6 @@ SceneSet scenes_to_tune_on(const LearningOptions& options) {
     scenes.every_m *= kPoses;
     return make_scene_set(options.tracks, scenes);
 }
-
-// Tuned detectors, by random search over their parameters. Weights of colors are not tuned, so the parameters
-// for scenes with colors are those without.
-
-fs::path tuned_file(const DetectorRecipe& recipe, const fs::path& folder) {
-    return folder / (std::string(recipe.name) + ".json");
-}
-
-void learn_tuned(const DetectorRecipe& recipe, const LearningOptions& options, const fs::path& folder) {
-    const fs::path file = tuned_file(recipe, folder);
-    if (fs::exists(file)) return;
-    if (!options.without_colors.empty()) {
-        write(file, text_of(tuned_file(recipe, options.without_colors)));
-        return;
-    }
-    const SceneSet set = scenes_to_tune_on(options);
-    const TuningResult tuned =
-        tune_detector(recipe, set, {options.evaluations, options.scenes.seed, options.scenes.threads});
-    write(file, to_json_text(recipe, tuned.values));
-}
-
-Learned load_tuned(const DetectorRecipe& recipe, const fs::path& folder) {
-    const fs::path file = tuned_file(recipe, folder);
-    return DetectorFactory([make = recipe.tuned()->make, values = parse_values(recipe, text_of(file), file)] {
-        return make(values);
-    });
-}
-
-// The weights of the RLD objective with the costs of the lane's shape.
 
 RldParameters tuned_shape(const LearningOptions& options, const EvaluationOptions& solved) {
     const Evaluation evaluation(scenes_to_tune_on(options), solved);
@@ -181,7 +151,7 @@ RldParameters with_color_weight(const RldParameters& parameters, const LearningO
     return best;
 }
 
-void learn_shape(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
+void learn_shape(const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kShape;
     if (fs::exists(file)) return;
     EvaluationOptions solved;
@@ -209,7 +179,7 @@ constexpr std::size_t kLearnedRldUnits = 16;
 constexpr std::size_t kLearnedRldSteps = 2000;
 constexpr double kLearnedRldRate = 0.02;
 
-void learn_rld(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
+void learn_rld(const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kLearnedRld;
     if (fs::exists(file)) return;
     RldTrainingOptions training;
@@ -243,7 +213,7 @@ Learned load_rld(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
 
 // The costs of the strip program, with the options of the shipped ones. They ignore colours.
 
-void learn_strip(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
+void learn_strip(const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kStrip;
     if (fs::exists(file)) return;
     StripTrainingOptions training;
@@ -302,7 +272,7 @@ FrontTrainingRun learn_colors(FrontTrainingRunOptions run, const LearningOptions
     return colors;
 }
 
-void learn_front(const DetectorRecipe& /*recipe*/, const LearningOptions& options, const fs::path& folder) {
+void learn_front(const LearningOptions& options, const fs::path& folder) {
     if (fs::exists(folder / kFrontFoldFile)) return;
     FrontTrainingRunOptions run;
     run.tracks = options.tracks;
@@ -341,12 +311,10 @@ constexpr std::array kLearners{NamedLearner{"front", {learn_front, load_front}},
                                NamedLearner{"rld-shape", {learn_shape, load_shape}},
                                NamedLearner{"rld-learned", {learn_rld, load_rld}},
                                NamedLearner{"rld-strip", {learn_strip, load_strip}}};
-constexpr Learner kTuned{learn_tuned, load_tuned};
 
 }  // namespace
 
 const Learner* find_learner(const DetectorRecipe& recipe) {
-    if (recipe.tuned() != nullptr) return &kTuned;
     const auto named = std::ranges::find(kLearners, recipe.name, &NamedLearner::detector);
     return named == kLearners.end() ? nullptr : &named->learner;
 }

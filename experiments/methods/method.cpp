@@ -9,7 +9,6 @@
 #include "solvers/registry.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace conelane::experiments {
 namespace {
@@ -190,21 +189,6 @@ const Method* known_method(std::string_view name) {
 const Method& find_method(std::string_view name) {
     if (const Method* const known = known_method(name)) return *known;
     throw InvalidInput("method", fmt::format("there is no method '{}', see `conelane methods`", name));
-}
-
-std::vector<std::string_view> tunable_names() {
-    std::vector<std::string_view> names;
-    for (const Method& method : known_methods()) {
-        if (method.recipe->tuned() != nullptr) names.push_back(method.name);
-    }
-    return names;
-}
-
-const DetectorRecipe& find_tunable(std::string_view name) {
-    const Method* const known = known_method(name);
-    if (known != nullptr && known->recipe->tuned() != nullptr) return *known->recipe;
-    throw InvalidInput("method", fmt::format("'{}' has no parameters for this command, only {} have", name,
-                                             fmt::join(tunable_names(), ", ")));
 }
 
 std::set<std::string> training_courses(std::string_view name) {

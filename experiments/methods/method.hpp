@@ -36,15 +36,14 @@ using DetectorFactory = std::function<std::unique_ptr<LaneDetector>()>;
 struct Learner {
     /// Learns and writes its files to the folder. Existing files are not learned again, so detectors share
     /// them and a stopped run resumes. Throws InputError or InvalidInput.
-    void (*learn)(const DetectorRecipe& recipe, const LearningOptions& options,
-                  const std::filesystem::path& folder);
+    void (*learn)(const LearningOptions& options, const std::filesystem::path& folder);
     /// What the files hold: parameters of RLD for the recipe, or else how to make the detector. Throws
     /// InputError if one is missing or invalid.
     std::variant<DetectorFactory, RldParameters> (*load)(const DetectorRecipe& recipe,
                                                          const std::filesystem::path& folder);
 };
 
-/// The learner of a detector; null if it learns nothing. Every tuned detector has one: random search.
+/// The learner of a detector; null if it learns nothing.
 [[nodiscard]] const Learner* find_learner(const DetectorRecipe& recipe);
 
 /// A method that answers scene after scene, each timed in the same way: from the scene in memory to the lane
@@ -71,7 +70,7 @@ struct RunOptions {
 };
 
 /// What a text of `--method` or `--methods` names. The text is resolved once, by parse_method; everything
-/// that compares, races, tunes or cross-validates methods takes this.
+/// that compares, races or cross-validates methods takes this.
 struct Method {
     std::string name;                             ///< as tables show it
     const DetectorRecipe* recipe = nullptr;       ///< of a detector of this program
@@ -112,10 +111,6 @@ struct Method {
 
 /// Throws InvalidInput naming the method if there is none of that name.
 [[nodiscard]] const Method& find_method(std::string_view name);
-
-/// The detector of that name, which `conelane tune` can tune. Throws InvalidInput listing the names.
-[[nodiscard]] const DetectorRecipe& find_tunable(std::string_view name);
-[[nodiscard]] std::vector<std::string_view> tunable_names();
 
 /// The courses that the detector of that name has learned from; empty if it has learned from none, or if
 /// there is no such detector.

@@ -25,9 +25,7 @@ _OF_SOURCE = {
         "rld-shape": "rld-pair with three more costs, for the shape of the lane: another objective, another optimum.",
         "rld-context": "Looks at 24 cones and answers for the 12 nearest.",
         "rld-learned": "rld-pair with learned costs of edges, turns and ends; steps over missed cones.",
-        "rld-strip": "The cheapest strip of triangles between two boundaries, by learned costs of both together, with proof."},
-    "baseline": {"delaunay-beam": "Beam search for a centre line through the Delaunay triangulation of the cones, as the team AMZ "
-                                  "drove with."}}
+        "rld-strip": "The cheapest strip of triangles between two boundaries, by learned costs of both together, with proof."}}
 
 
 def described(results, name):

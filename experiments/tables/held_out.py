@@ -26,11 +26,10 @@ METHODS = {
     "clc-paper": "`clc-paper`",
     "rld-pair": "`rld-pair`",
     "rld-cbc": "`rld-cbc`, 12 cones",
-    "delaunay-beam": "`delaunay-beam`",
     "ft-fsd-path-planning": "ft-fsd-path-planning, without colours",
 }
 # The run in which a method sees colours, for each method that can use them.
-COLOURED = {"front": "front_colors", "rld-learned": "others_colors", "rld-shape": "others_colors", "delaunay-beam": "others_colors",
+COLOURED = {"front": "front_colors", "rld-learned": "others_colors", "rld-shape": "others_colors",
             "ft-fsd-path-planning": "peers_colors"}
 # Among 12 cones no lane is long enough to be usable: experiments/tables/engines compares cone sets.
 README_METHODS = {name: title for name, title in METHODS.items() if name != "rld-cbc"} | {

@@ -49,6 +49,18 @@ constexpr std::array<TunedParameter, kShape + kCosts + kLimits> kTuned{{
     {"t_crit", &P::t_crit, 3.5, 10.0, true},
 }};
 
+/// The share of the range at which a value is.
+double share_of(const TunedParameter& range, double value) {
+    return range.logarithmic ? std::log(value / range.lowest) / std::log(range.highest / range.lowest)
+                             : (value - range.lowest) / (range.highest - range.lowest);
+}
+
+/// The value at a share.
+double value_at(const TunedParameter& range, double share) {
+    return range.logarithmic ? range.lowest * std::pow(range.highest / range.lowest, share)
+                             : range.lowest + share * (range.highest - range.lowest);
+}
+
 constexpr std::array<std::string_view, 4> kObjectives{"accuracy", "iou", "success", "usable"};
 
 /// The lane of least cost, found among the cones of the context and cut to the cone set; no lane if nothing

@@ -13,19 +13,6 @@ struct TunedParameter {
     bool logarithmic;  ///< equal steps are equal ratios
 };
 
-/// The share of a range, such as that of a TunedParameter or a TunableParameter, at which a value is.
-template <typename Range>
-[[nodiscard]] double share_of(const Range& range, double value) {
-    return range.logarithmic ? std::log(value / range.lowest) / std::log(range.highest / range.lowest)
-                             : (value - range.lowest) / (range.highest - range.lowest);
-}
-/// The value at a share.
-template <typename Range>
-[[nodiscard]] double value_at(const Range& range, double share) {
-    return range.logarithmic ? range.lowest * std::pow(range.highest / range.lowest, share)
-                             : range.lowest + share * (range.highest - range.lowest);
-}
-
 /// The parameters that tuning changes. The others have no effect of their own: w_b sets the unit of the
 /// objective, and d_t, theta_t with their weights and limits occur only as w_s / d_t^4, d_t^4 s_crit, w_t /
 /// theta_t^4 and theta_t^4 t_crit. An expected angle below pi would prefer bends to straights. The pairing

@@ -7,8 +7,7 @@ namespace {
 
 struct CompareOptions {
     ComparisonOptions comparison;
-    std::vector<std::string> detectors{"rld-cbc", "rld-pair",  "rld-shape",    "front",
-                                       "clc",     "clc-paper", "delaunay-beam"};
+    std::vector<std::string> detectors{"rld-cbc", "rld-pair", "rld-shape", "front", "clc", "clc-paper"};
     ParameterSource parameters;
     std::string directory;
     std::optional<std::size_t> nearest;

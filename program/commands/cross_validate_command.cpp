@@ -59,7 +59,7 @@ void add_cross_validate_command(CLI::App& program) {
         "cross-validate",
         "compares methods on courses that none of them has learned from: a fold for each family of courses");
     auto options = std::make_shared<CrossValidateOptions>();
-    options->detectors = {"front", "rld-pair", "rld-shape", "clc", "clc-paper", "delaunay-beam"};
+    options->detectors = {"front", "rld-pair", "rld-shape", "clc", "clc-paper"};
     SceneOptions& scenes = options->run.comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0, 50.0};

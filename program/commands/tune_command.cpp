@@ -1,9 +1,6 @@
 #include "evaluation/progress/progress.hpp"
-#include "learning/tuning/detector_tuning.hpp"
 #include "learning/tuning/rld_tuning.hpp"
 #include "program/commands/command_parts.hpp"
-
-#include <fmt/ranges.h>
 
 namespace conelane::program {
 namespace {
@@ -11,7 +8,6 @@ namespace {
 using nlohmann::ordered_json;
 
 struct TuneOptions {
-    std::string detector;  ///< empty: RLD
     std::vector<std::string> tracks;
     SceneOptions scenes;
     EvaluationOptions evaluation;
@@ -21,7 +17,7 @@ struct TuneOptions {
     std::string out;
 };
 
-/// What a record has in each tuning.
+/// Where the parameters are from: program, machine, scenes and work.
 ordered_json record_of(const TuneOptions& options) {
     ordered_json json{{"commit", provenance().commit},
                       {"compiler", provenance().compiler},
@@ -34,39 +30,6 @@ ordered_json record_of(const TuneOptions& options) {
 
 std::filesystem::path record_path(std::filesystem::path parameters) {
     return parameters.replace_extension(".record.json");
-}
-
-ordered_json describe(const DetectorFigure& figure) {
-    return {{"scenes", figure.scenes}, {"usable", figure.usable}, {"iou", figure.iou}};
-}
-
-/// Tunes a detector with parameters of its own, for usable lanes.
-void tune_method(TuneOptions& options) {
-    const DetectorRecipe& recipe = find_tunable(options.detector);
-    options.scenes.threads = options.evaluation.threads;
-    const DetectorTuningOptions tuning{.evaluations = options.tuner.evaluations,
-                                       .seed = options.scenes.seed,
-                                       .threads = options.evaluation.threads};
-    const SceneSet set = make_scene_set(options.tracks, options.scenes);
-    TuningResult tuned;
-    {
-        Progress progress("tune " + options.detector, tuning.evaluations);
-        tuned = tune_detector(recipe, set, tuning, [&] { progress.advance(); });
-    }
-    ordered_json record{{"method", options.detector}};
-    record.update(record_of(options));
-    record["figure_of_start"] = describe(tuned.figure_of_start);
-    record["figure"] = describe(tuned.figure);
-    AtomicFile record_file(record_path(options.out));
-    record_file.stream() << record.dump(2) << '\n';
-    AtomicFile parameters(options.out);
-    parameters.stream() << to_json_text(recipe, tuned.values);
-    commit_together(std::array{&record_file, &parameters});
-    const auto text = [](const DetectorFigure& figure) {
-        return fmt::format("{:.1f} % usable, IoU {:.1f} %", 100.0 * figure.usable, 100.0 * figure.iou);
-    };
-    fmt::print("{} on {} scenes: {} before, {} after\n", options.detector, tuned.figure.scenes,
-               text(tuned.figure_of_start), text(tuned.figure));
 }
 
 void tune_rld(TuneOptions& options) {
@@ -120,16 +83,12 @@ void tune_rld(TuneOptions& options) {
 }  // namespace
 
 void add_tune_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand(
-        "tune", "finds the parameters of RLD, or of another method, that answer best on given tracks");
+    CLI::App& command =
+        *program.add_subcommand("tune", "finds the parameters of RLD that answer best on given tracks");
     auto options = std::make_shared<TuneOptions>();
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 6.6;
-    command.add_option("--method", options->detector,
-                       fmt::format("{}, tuned for usable lanes; RLD without it, to which the options "
-                                   "from --objective to --most-nodes, --start and --shape belong",
-                                   fmt::join(tunable_names(), " or ")));
     add_tracks_option(command, options->tracks)->required();
     const auto objectives = objective_names();
     command
@@ -161,16 +120,7 @@ void add_tune_command(CLI::App& program) {
     command.add_flag("--shape", options->shape, "start with the costs of a lane's shape and tune them too");
     add_threads_option(command, options->evaluation.threads, "scenes solved at a time");
     add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();
-    for (const char* const of_rld :
-         {"--objective", "--nearest", "--context", "--time-limit", "--most-nodes", "--start", "--shape"})
-        command.get_option(of_rld)->excludes("--method");
-    command.callback([options, &command] {
-        if (options->detector.empty()) return tune_rld(*options);
-        if (command.count("--every") == 0) options->scenes.every_m = 8.8;
-        if (command.count("--evaluations") == 0)
-            options->tuner.evaluations = DetectorTuningOptions{}.evaluations;
-        tune_method(*options);
-    });
+    command.callback([options] { tune_rld(*options); });
 }
 
 }  // namespace conelane::program

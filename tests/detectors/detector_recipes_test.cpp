@@ -79,7 +79,6 @@ TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParam
     EXPECT_THAT(training_courses("clc"), Contains("slalom@23")) << "of the step scores alone";
     EXPECT_THAT(training_courses("clc-paper"), Not(Contains("slalom@23")));
     EXPECT_THAT(training_courses("clc"), Not(Contains("circle")));
-    EXPECT_THAT(training_courses("delaunay-beam"), Contains("fsd_1"));
     EXPECT_THAT(training_courses("rld-shape"), Contains("fsd_6"));
     for (const char* learned : {"rld-learned", "rld-strip"})
         EXPECT_THAT(training_courses(learned), AllOf(Contains("fsd_6"), Contains("kidney@4")));

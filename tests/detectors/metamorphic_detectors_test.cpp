@@ -137,24 +137,6 @@ TEST(RldMetamorphic, FindsTheSameLaneAtAnotherScale) {
     }
 }
 
-TEST(DelaunayBeamMetamorphic, FindsTheSameLaneAtAnotherScale) {
-    constexpr double kFactor = 0.9375;  // w_start may not be less
-    const Change smaller{"Smaller", [](Scene scene) { return tests::scaled(std::move(scene), kFactor); }};
-    const DetectorRecipe* const recipe = find_recipe("delaunay-beam");
-    std::vector<double> values = shipped_values(*recipe);
-    const auto detector = recipe->tuned()->make(values);
-    auto value = values.begin();
-    for (const TunableParameter& parameter : recipe->tuned()->parameters()) {
-        if (parameter.unit == "m") *value *= kFactor;
-        if (parameter.unit == "1/m^2") *value /= kFactor * kFactor;
-        ++value;
-    }
-    const auto other = recipe->tuned()->make(values);
-    const Outcome outcome = compare(*detector, *other, "delaunay-beam", kAsItIs, smaller, false);
-    EXPECT_GT(outcome.found, outcome.scenes * 3 / 4);
-    EXPECT_EQ(outcome.different, 0U);
-}
-
 /// Learned detectors have lengths in metres among their inputs: their lanes may change with the scale. A
 /// scale that is off by a billionth, as from a survey, changes no lane.
 TEST_P(DetectorScale, AlmostTheSameIsAsGood) {

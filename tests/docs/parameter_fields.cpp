@@ -1,7 +1,6 @@
 // parameter_fields prints the parameters of the library, a line each, with tabs between the fields: group,
 // key, default, lowest, highest, unit, description. tests/docs/reference_pages makes parameters.md of it.
 #include "conelane/rld_parameter_sets.hpp"
-#include "detectors/recipe.hpp"
 
 #include <cstdio>
 
@@ -27,15 +26,6 @@ int main() {
     for (const RldParameterField& field : conelane::rld_extra_fields()) {
         print("rld extra", field.key, defaults.*field.value, field.lowest, field.highest, field.unit,
               field.description);
-    }
-    for (const conelane::DetectorRecipe& recipe : conelane::detector_recipes()) {
-        if (recipe.tuned() == nullptr) continue;
-        const std::vector<double> values = conelane::shipped_values(recipe);
-        auto value = values.begin();
-        for (const auto& field : recipe.tuned()->parameters()) {
-            print("tuned " + std::string(recipe.name), field.key, *value++, field.lowest, field.highest,
-                  field.unit, field.description);
-        }
     }
     // The columns of the shipped sets: group "set NAME".
     for (const std::string_view name : conelane::rld_parameter_set_names()) {

@@ -121,9 +121,6 @@ def parameters_page(root, folder, fields, missing):
         values = [groups[name][number][1] for name in sets]
         if any(other != value for other in values):
             lines.append(f"| `{key}` | {value} | " + " | ".join(values) + " |")
-    for group in (name for name in groups if name.startswith("tuned ")):
-        name = group[6:]
-        lines += ["", f"## {name}", "", f"Tuned by `conelane tune --method {name}`; the default is the shipped value.", ""] + number_table(group)
     lines += ["", "## Options of the C++ library", "", "Units are in the names: `_ms`, `_m`, `_s`. Python has the same names as keyword arguments; the values of `drivable` are given to `Planner` itself.", ""]
     for struct, header, what in STRUCTS:
         lines += [f"### {struct}", "", f"[{os.path.basename(header)}]({sources}/{header}): {what}.", "", "| option | type | default | meaning |", "| --- | --- | --- | --- |"]

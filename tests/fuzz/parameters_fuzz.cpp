@@ -1,8 +1,7 @@
-// Readers of everything that tells a run what to do: RLD parameters, those of other detectors, the cards of
-// detectors, the record of a run, and the names of detectors from outside.
+// Readers of everything that tells a run what to do: RLD parameters, the cards of detectors, the record of a
+// run, and the names of detectors from outside.
 
 #include "experiments/comparison/run_record.hpp"
-#include "learning/tuning/detector_tuning.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
@@ -25,10 +24,6 @@ void read_all(std::string_view bytes) {
             }
         }
     });
-    for (const std::string_view name : experiments::tunable_names()) {
-        const DetectorRecipe& recipe = experiments::find_tunable(name);
-        answers([&] { (void)recipe.tuned()->make(learning::parse_values(recipe, bytes, "input.json")); });
-    }
     answers([&] { (void)read_detector_card(file).summary(); });
     const std::string text(bytes);
     (void)folder.write("run.json", bytes);

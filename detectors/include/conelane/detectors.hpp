@@ -62,11 +62,11 @@ struct DetectorOptions {
 };
 
 /// The detector of that name. Without options it is the detector that the tables show: a learned
-/// detector has its trained weights, `delaunay-beam` has tuned parameters, `rld-...` has the defaults of
-/// RldParameters, or those of with_shape_costs; tuned sets are in rld_parameter_sets.hpp.
-/// Throws InvalidInput: for an unknown name, listing the names; for an option that is out of range or that
-/// the detector does not use, naming the option; and for weights that cannot be read. Detectors are
-/// independent of each other; each serves one thread.
+/// detector has its trained weights, `rld-...` has the defaults of RldParameters, or those of
+/// with_shape_costs; tuned sets are in rld_parameter_sets.hpp. Throws InvalidInput: for an unknown name,
+/// listing the names; for an option that is out of range or that the detector does not use, naming the
+/// option; and for weights that cannot be read. Detectors are independent of each other; each serves one
+/// thread.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(std::string_view name,
                                                           const DetectorOptions& options = {});
 

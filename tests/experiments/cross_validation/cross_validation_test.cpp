@@ -23,7 +23,7 @@ std::vector<std::string> courses_learned(const std::string& weights) {
 class CrossValidation : public ProgramFixture {};
 
 TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
-    const Outcome outcome = run_well(kFolds + "front,clc,delaunay-beam,rld-pair,rld-learned,rld-strip");
+    const Outcome outcome = run_well(kFolds + "front,clc,rld-pair,rld-learned,rld-strip");
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/step_scores.json"))),
                 testing::ElementsAre("curvy", "straight"));
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/rank_net_extended.json"))),
@@ -56,7 +56,7 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
 }
 
 TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
-    const std::string methods = "front,rld-learned,rld-shape,delaunay-beam";
+    const std::string methods = "front,rld-learned,rld-shape";
     run_well(kFolds + methods);
     const std::string colors =
         "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
@@ -90,8 +90,6 @@ TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
             return shape;
         };
         EXPECT_EQ(without_w_color("colored"), without_w_color("cv"));
-        EXPECT_EQ(text_of(path("colored/folds/" + fold + "/delaunay-beam.json")),
-                  text_of(path("cv/folds/" + fold + "/delaunay-beam.json")));
     }
     const auto record = nlohmann::json::parse(text_of(path("colored/run.json"))).at("cross_validation");
     EXPECT_EQ(record.at("colors_from").at("a").at("front.json"), file_hash(path("cv/folds/a/front.json")));
@@ -104,8 +102,8 @@ TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
     EXPECT_THAT(refused("--methods front"), HasSubstr("needs scenes with colour"));
     EXPECT_THAT(refused("--color --methods front,clc"), HasSubstr("'clc' ignores colours"));
     EXPECT_THAT(refused("--color --methods front --folds cv/folds"), HasSubstr("--folds"));
-    std::filesystem::remove(path("cv/folds/b/delaunay-beam.json"));
-    EXPECT_THAT(refused("--color --methods delaunay-beam"), HasSubstr("delaunay-beam.json"));
+    std::filesystem::remove(path("cv/folds/b/rld-shape.json"));
+    EXPECT_THAT(refused("--color --methods rld-shape"), HasSubstr("rld-shape.json"));
     std::filesystem::remove_all(path("cv/folds/b"));
     EXPECT_THAT(refused("--color --methods front --overwrite"), HasSubstr("--colors-from"));
 }
