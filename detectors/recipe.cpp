@@ -216,9 +216,14 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
     } else {
         detector = std::get<OtherRecipe>(recipe.how).make();
     }
+    return drivable_lanes_among(options.nearest, std::move(detector));
+}
+
+std::unique_ptr<LaneDetector> drivable_lanes_among(std::optional<std::size_t> nearest,
+                                                   std::unique_ptr<LaneDetector> detector) {
     detector = answer_drivable_lanes(std::move(detector));
-    if (!options.nearest) return detector;
-    return std::make_unique<NearestCones>(std::move(detector), *options.nearest);
+    if (!nearest) return detector;
+    return std::make_unique<NearestCones>(std::move(detector), *nearest);
 }
 
 ConeSet cone_set(const DetectorRecipe& recipe, const DetectorOptions& options) {

@@ -95,6 +95,10 @@ struct DetectorRecipe : DetectorInfo {
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe,
                                                           const DetectorOptions& options = {});
 
+/// A detector that answers drivable lanes among the nearest cones ahead, or among all.
+[[nodiscard]] std::unique_ptr<LaneDetector> drivable_lanes_among(std::optional<std::size_t> nearest,
+                                                                 std::unique_ptr<LaneDetector> detector);
+
 /// The cones that the detector sees and answers for under these options.
 [[nodiscard]] ConeSet cone_set(const DetectorRecipe& recipe, const DetectorOptions& options);
 

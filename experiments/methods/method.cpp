@@ -169,9 +169,9 @@ DetectorMaker Method::learned_maker(const std::filesystem::path& folder, const R
         with_parameters.detector.rld_parameters = std::move(*parameters);
         return maker(with_parameters);
     }
-    return [made = std::get<DetectorFactory>(std::move(learned)), known = name,
+    return [made = std::get<DetectorFactory>(std::move(learned)), known = name, size = nearest,
             limits = options.limits](const std::string& /*track*/) {
-        return std::make_unique<TimedLaneDetector>(known, answer_drivable_lanes(made()), limits, std::nullopt,
+        return std::make_unique<TimedLaneDetector>(known, drivable_lanes_among(size, made()), limits, size,
                                                    std::nullopt);
     };
 }

@@ -8,6 +8,7 @@ struct CrossValidateOptions {
     CrossValidationOptions run;
     std::vector<std::string> families;
     std::vector<std::string> detectors;
+    std::optional<std::size_t> nearest;
     std::vector<std::string> learning_conditions{"paper", "car"};
     double learning_every_m = 12.0;
     unsigned threads = 1;
@@ -33,7 +34,7 @@ void run(CrossValidateOptions& options) {
     require_in_range(learning_fields(run.learning));
     run.families = parse_families(options.families);
     for (const std::string& text : split_detectors(options.detectors))
-        run.comparison.methods.push_back(parse_method(text));
+        run.comparison.methods.push_back(parse_method(text, options.nearest));
     SceneOptions& learned = run.learning.scenes;
     learned.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     learned.ranges_m = {30.0, 50.0};
@@ -74,6 +75,8 @@ void add_cross_validate_command(CLI::App& program) {
     command.add_option("--methods", options->detectors, "see `conelane methods`")
         ->delimiter(',')
         ->capture_default_str();
+    add_nearest_option(command, options->nearest,
+                       "the same cone-set size for every method; they learn from all cones");
     add_scene_options(command, scenes);
     command
         .add_option("--learn-condition", options->learning_conditions,

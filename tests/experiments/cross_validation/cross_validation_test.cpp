@@ -14,7 +14,7 @@ using namespace learning;
 const std::string kFolds =
     "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
     "--learn-condition paper --learn-every 60 --variants 0 --evaluations 2 --condition paper --fp 0.3 "
-    "--range 30 --every 40 --front-steps 0.002 --rld-steps 0.002 --out cv --methods ";
+    "--range 30 --every 40 --front-steps 0.002 --rld-steps 0.002 --time-limit 30000 --out cv --methods ";
 
 std::vector<std::string> courses_learned(const std::string& weights) {
     return nlohmann::json::parse(weights).at("training").at("tracks").get<std::vector<std::string>>();
@@ -39,7 +39,7 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
     // Each course is driven with the weights of the fold that holds it out, and with no others.
     const std::vector<AnnotatedScene> scenes = read_scenes(path("cv/scenes.scenes.jsonl"));
     RunOptions options;
-    options.limits.time_limit_ms = 400.0;
+    options.limits.time_limit_ms = 30'000.0;
     for (const std::string detector : {"clc", "front", "rld-learned", "rld-strip"}) {
         const std::vector<LaneRecord> lanes = read_lanes(path("cv/" + detector + ".lanes.jsonl"));
         ASSERT_EQ(lanes.size(), scenes.size());
