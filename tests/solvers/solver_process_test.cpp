@@ -48,7 +48,7 @@ TEST_P(Interrupt, IsSeenByTheProgramsHandler) {
     const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
     const LaneGraphProblem problem = make_problem(tests::random_scene(1, 30), {}, EdgeExtent::all_pairs);
     {
-        // The second is sent when the first was seen: two that wait for the process are one.
+        // The second is sent when the first was seen: two pending signals of one kind arrive as one.
         const std::jthread interrupter([] {
             for (int sent = 0; sent < 2; ++sent) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(100));
