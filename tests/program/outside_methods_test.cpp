@@ -144,7 +144,7 @@ class OutsideFaults : public OutsideDetectors, public testing::WithParamInterfac
 /// Its fourth scene is the third of the run, because the first one is asked twice.
 TEST_P(OutsideFaults, CostOneAnswerAndTheRunGoesOn) {
     run_well("scenes --tracks generated:kidney --every 20 --fp 0.2 --out s.scenes.jsonl");
-    run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
+    run_well("detect --method clc --time-limit 60000 --scenes s.scenes.jsonl --out clc.lanes.jsonl");
     const auto start = std::chrono::steady_clock::now();
     run_well(
         "detect --scenes s.scenes.jsonl --out bad.lanes.jsonl --method 'exec:bad=exec env OUTSIDE_PID=pid " +

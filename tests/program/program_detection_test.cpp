@@ -10,13 +10,13 @@ namespace {
 TEST_F(Program, AStreamIsAnsweredLineByLine) {
     make_scenes("--fp 0.2");
     const std::vector<Lane> expected = [&] {
-        run_well("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl");
+        run_well("detect --method clc --time-limit 60000 --scenes s.scenes.jsonl --out l.lanes.jsonl");
         return lanes_in(path("l.lanes.jsonl"));
     }();
     const std::string in = path("in").string();
     const std::string out = path("out").string();
     ASSERT_EQ(std::system(("mkfifo " + in + " " + out).c_str()), 0);
-    ASSERT_EQ(std::system(("(timeout 60 " + conelane_program() + " detect --method clc --scenes - --out - <" +
+    ASSERT_EQ(std::system(("(timeout 60 " + conelane_program() + " detect --method clc --time-limit 60000 --scenes - --out - <" +
                            in + " >" + out + "; echo $? >" + path("code").string() + ") &")
                               .c_str()),
               0);
@@ -42,7 +42,7 @@ TEST_F(Program, AStreamIsAnsweredLineByLine) {
     scenes.close();
     EXPECT_FALSE(std::getline(lanes, lane)) << "it ends with its input";
     EXPECT_TRUE(wait_until([&] { return text_of(path("code")) == "0\n"; }));
-    const Outcome whole = run("detect --method clc --scenes s.scenes.jsonl --out -");
+    const Outcome whole = run("detect --method clc --time-limit 60000 --scenes s.scenes.jsonl --out -");
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(whole.output, '\n')), expected.size());
 }
 

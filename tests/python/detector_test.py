@@ -24,14 +24,14 @@ class Answers(unittest.TestCase):
             with self.subTest(name):
                 detector = conelane.Detector(name)
                 self.assertEqual((detector.name, detector.meaning), (name, meaning))
-                lane = detector.detect(STRAIGHT, ORIGIN)
+                lane = detector.detect(STRAIGHT, ORIGIN, time_limit_ms=None)
                 self.assertTrue(lane.found)
                 self.assertEqual(lane.left.tolist(), [1, 3, 5, 7])
                 self.assertEqual(lane.right.tolist(), [0, 2, 4, 6])
                 self.assertEqual(lane.method, name)
 
     def test_sides_are_indices_whatever_the_ids(self):
-        lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, ids=np.arange(8)[::-1] * 10 - 20)
+        lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, time_limit_ms=None, ids=np.arange(8)[::-1] * 10 - 20)
         self.assertEqual(lane.left.tolist(), [1, 3, 5, 7])
         self.assertEqual(lane.ids.tolist(), [50, 40, 30, 20, 10, 0, -10, -20])
         np.testing.assert_array_equal(lane.left_points, STRAIGHT[1::2])
@@ -54,17 +54,17 @@ class Answers(unittest.TestCase):
         np.testing.assert_allclose(right, 1.5, atol=1e-9)
 
     def test_what_a_method_knows_of_its_answer(self):
-        front = conelane.Detector("front").detect(STRAIGHT, ORIGIN)
+        front = conelane.Detector("front").detect(STRAIGHT, ORIGIN, time_limit_ms=None)
         self.assertTrue(0.0 <= front.confidence <= 1.0)
         self.assertGreater(front.trusted_m, 0.0)
         self.assertIsNone(front.objective)
-        rld = conelane.Detector("rld-pair").detect(STRAIGHT, ORIGIN)
+        rld = conelane.Detector("rld-pair").detect(STRAIGHT, ORIGIN, time_limit_ms=None)
         self.assertIsNone(rld.confidence)
         self.assertAlmostEqual(rld.objective, rld.bound)
 
     def test_no_cones_no_lane(self):
         for nothing in ([], np.zeros((0, 2))):
-            lane = conelane.Detector("front").detect(nothing, ORIGIN)
+            lane = conelane.Detector("front").detect(nothing, ORIGIN, time_limit_ms=None)
             self.assertEqual((lane.status, lane.found, len(lane.left), len(lane.right)), ("none", False, 0, 0))
             self.assertEqual(lane.centre_line().shape, (0, 7))
 
@@ -74,30 +74,30 @@ class Answers(unittest.TestCase):
         self.assertTrue(conelane.Detector("rld-pair").detect(STRAIGHT, ORIGIN, time_limit_ms=None).found)
 
     def test_options(self):
-        near = conelane.Detector("front", nearest=4).detect(STRAIGHT, ORIGIN)
+        near = conelane.Detector("front", nearest=4).detect(STRAIGHT, ORIGIN, time_limit_ms=None)
         self.assertEqual((near.left.tolist(), near.right.tolist()), ([1, 3], [0, 2]))
         # Edges of 4 m cost too much where a boundary's cones are expected 1 m apart.
         dense = conelane.Detector("rld-pair", parameters={"d_e": 1.0, "d_t": 0.2, "s_crit": 0.1})
-        self.assertEqual(dense.detect(STRAIGHT, ORIGIN).status, "none")
+        self.assertEqual(dense.detect(STRAIGHT, ORIGIN, time_limit_ms=None).status, "none")
         self.assertTrue(conelane.Detector("rld-context", parameters="context", pairing="paper")
-                        .detect(STRAIGHT, ORIGIN).found)
+                        .detect(STRAIGHT, ORIGIN, time_limit_ms=None).found)
 
     def test_numbers_of_any_type_and_layout(self):
-        expected = conelane.Detector("clc").detect(STRAIGHT, ORIGIN).left.tolist()
+        expected = conelane.Detector("clc").detect(STRAIGHT, ORIGIN, time_limit_ms=None).left.tolist()
         whole = STRAIGHT.astype(int) * 1
         for cones in (STRAIGHT.tolist(), STRAIGHT.astype(np.float32), np.asfortranarray(STRAIGHT),
                       np.repeat(STRAIGHT, 2, axis=0)[::2], np.hstack([STRAIGHT, STRAIGHT])[:, :2]):
-            self.assertEqual(conelane.Detector("clc").detect(cones, ORIGIN).left.tolist(), expected)
-        np.testing.assert_array_equal(conelane.Detector("clc").detect(whole, ORIGIN).cones, whole)
+            self.assertEqual(conelane.Detector("clc").detect(cones, ORIGIN, time_limit_ms=None).left.tolist(), expected)
+        np.testing.assert_array_equal(conelane.Detector("clc").detect(whole, ORIGIN, time_limit_ms=None).cones, whole)
 
     def test_colours_by_name_and_by_code(self):
         names = ["yellow", "blue"] * 4
         codes = [conelane.Color.yellow, conelane.Color.blue] * 4
         for colors in (names, np.array(names), codes, np.array(codes, dtype=np.uint8)):
-            lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, colors=colors)
+            lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, time_limit_ms=None, colors=colors)
             self.assertEqual(lane.colors.tolist(), [2, 1] * 4)
         rows = [[0.1, 0.2, 0.7, 0, 0], [0, 0.5, 0.25, 0.25, 0]] * 4
-        lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, colors=rows)
+        lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, time_limit_ms=None, colors=rows)
         self.assertEqual(lane.colors.tolist(), [2, 1] * 4)
         scene = conelane.Scene(STRAIGHT, ORIGIN, colors=rows)
         self.assertEqual(scene.color_probabilities.tolist(), rows)
@@ -106,21 +106,21 @@ class Answers(unittest.TestCase):
 
     def test_covariances_are_zero_by_default_and_shorten_what_is_trusted(self):
         front = conelane.Detector("front")
-        without = front.detect(STRAIGHT, ORIGIN)
+        without = front.detect(STRAIGHT, ORIGIN, time_limit_ms=None)
         matrices = np.tile([[0.04, 0.01], [0.01, 0.09]], (8, 1, 1))
         for zero in (np.zeros((8, 2, 2)), np.zeros((8, 2, 2), dtype=int).tolist()):
-            lane = front.detect(STRAIGHT, ORIGIN, covariances=zero)
+            lane = front.detect(STRAIGHT, ORIGIN, time_limit_ms=None, covariances=zero)
             self.assertEqual((lane.left.tolist(), lane.confidence, lane.trusted_m),
                              (without.left.tolist(), without.confidence, without.trusted_m))
-        self.assertLess(front.detect(STRAIGHT, ORIGIN, covariances=1e4 * matrices).trusted_m, without.trusted_m)
+        self.assertLess(front.detect(STRAIGHT, ORIGIN, time_limit_ms=None, covariances=1e4 * matrices).trusted_m, without.trusted_m)
         scene = conelane.Scene(STRAIGHT, ORIGIN, covariances=matrices)
         np.testing.assert_array_equal(scene.covariances, matrices)
         self.assertIsNone(conelane.Scene(STRAIGHT, ORIGIN).covariances)
-        self.assertEqual(front.detect_scene(scene).trusted_m,
-                         front.detect(STRAIGHT, ORIGIN, covariances=matrices).trusted_m)
+        self.assertEqual(front.detect_scene(scene, time_limit_ms=None).trusted_m,
+                         front.detect(STRAIGHT, ORIGIN, time_limit_ms=None, covariances=matrices).trusted_m)
         np.testing.assert_array_equal(
-            conelane.Planner().update(STRAIGHT, ORIGIN, 0.0, covariances=matrices).centre_line,
-            conelane.Planner().update(STRAIGHT, ORIGIN, 0.0).centre_line)
+            conelane.Planner().update(STRAIGHT, ORIGIN, 0.0, time_limit_ms=None, covariances=matrices).centre_line,
+            conelane.Planner().update(STRAIGHT, ORIGIN, 0.0, time_limit_ms=None).centre_line)
 
     def test_scenes_with_noise_by_range_have_covariances(self):
         track = conelane.load_tracks("generated:circle")[0]
@@ -131,7 +131,7 @@ class Answers(unittest.TestCase):
 
     def test_an_answer_keeps_its_own_cones(self):
         cones = STRAIGHT.copy()
-        lane = conelane.Detector("front").detect(cones, ORIGIN)
+        lane = conelane.Detector("front").detect(cones, ORIGIN, time_limit_ms=None)
         cones[:] = 0.0
         lane.cones[:] = 0.0
         np.testing.assert_array_equal(lane.cones, STRAIGHT)
@@ -139,16 +139,16 @@ class Answers(unittest.TestCase):
 
 class OwnWeights(unittest.TestCase):
     def test_the_shipped_file_by_path_and_by_bytes_is_the_shipped_detector(self):
-        shipped = conelane.Detector("front").detect(STRAIGHT, ORIGIN)
+        shipped = conelane.Detector("front").detect(STRAIGHT, ORIGIN, time_limit_ms=None)
         for weights in (WEIGHTS, str(WEIGHTS), WEIGHTS.read_bytes()):
-            lane = conelane.Detector("front", weights=weights).detect(STRAIGHT, ORIGIN)
+            lane = conelane.Detector("front", weights=weights).detect(STRAIGHT, ORIGIN, time_limit_ms=None)
             self.assertEqual((lane.left.tolist(), lane.confidence, lane.trusted_m),
                              (shipped.left.tolist(), shipped.confidence, shipped.trusted_m))
 
     def test_other_weights_answer_otherwise(self):
         own = json.loads(WEIGHTS.read_text())
         own["usable_output_bias"] = [own["usable_output_bias"][0] - 3.0]
-        lanes = [conelane.Detector("front-warm", weights=weights).detect(STRAIGHT, ORIGIN)
+        lanes = [conelane.Detector("front-warm", weights=weights).detect(STRAIGHT, ORIGIN, time_limit_ms=None)
                  for weights in (WEIGHTS, json.dumps(own).encode())]
         self.assertLess(lanes[1].confidence, lanes[0].confidence - 1e-3)
 
@@ -221,9 +221,9 @@ class Refusals(unittest.TestCase):
             ("weights: line 1: must be a JSON object", lambda: conelane.Detector("front", weights=b"[]")),
             (f"weights: line {cut.count(newline) + 1}: the file ends in the middle",
              lambda: conelane.Detector("front", weights=cut)),
-            ("step_m", lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN).centre_line(step_m=0.0)),
+            ("step_m", lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN, time_limit_ms=None).centre_line(step_m=0.0)),
             ("usual_width_m: must be in [",
-             lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN).centre_line(usual_width_m=0.5)),
+             lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN, time_limit_ms=None).centre_line(usual_width_m=0.5)),
         ):
             with self.subTest(message), self.assertRaises(ValueError) as raised:
                 call()
@@ -233,7 +233,7 @@ class Refusals(unittest.TestCase):
         detector = conelane.Detector("front-warm")
         with self.assertRaises(ValueError):
             detector.detect(STRAIGHT * np.nan, ORIGIN)
-        self.assertTrue(detector.detect(STRAIGHT, ORIGIN).found)
+        self.assertTrue(detector.detect(STRAIGHT, ORIGIN, time_limit_ms=None).found)
 
 
 def run_together(calls):
@@ -297,7 +297,7 @@ class Plot(unittest.TestCase):
         from matplotlib import pyplot
 
         figure, ax = pyplot.subplots()
-        lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN)
+        lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, time_limit_ms=None)
         self.assertIs(lane.plot(ax), ax)
         drawn = {line.get_label(): line.get_xydata() for line in ax.get_lines()}
         self.assertEqual(set(drawn), {"cones", "left", "right", "centre line"})

@@ -65,7 +65,7 @@ class Stubs(unittest.TestCase):
         track, = conelane.load_tracks("generated:circle")
         scene = conelane.generate_scenes(track, every_m=20.0)[0]
         detector, planner = conelane.Detector("front"), conelane.Planner()
-        lane, plan = detector.detect_scene(scene), planner.update(scene.cones, scene.pose, 0.0)
+        lane, plan = detector.detect_scene(scene, time_limit_ms=None), planner.update(scene.cones, scene.pose, 0.0, time_limit_ms=None)
         for one in (track, track.boundaries, scene, detector, lane, lane.drivable(), conelane.score(scene, lane, track.boundaries), planner, plan,
                     plan.answer, conelane.solve_rld(scene.cones, scene.pose)):
             members = {node.name: node for node in named[type(one).__name__].body}

@@ -159,7 +159,7 @@ class Scores(unittest.TestCase):
     def test_the_true_lane_and_one_that_leaves_it(self):
         scene = conelane.Scene(CONES, (0, 0, 0), ground_truth=TRUTH)
         course = conelane.Boundaries([[x, 1.5] for x in range(0, 40, 4)], [[x, -1.5] for x in range(0, 40, 4)], False)
-        lane = conelane.Detector("front").detect(CONES, (0, 0, 0))
+        lane = conelane.Detector("front").detect(CONES, (0, 0, 0), time_limit_ms=None)
         good = conelane.score(scene, lane, course)
         self.assertEqual((good.category, good.usable, good.success, good.iou, good.accurate),
                          ("ground_truth", True, True, 1.0, True))
@@ -175,10 +175,10 @@ class Scores(unittest.TestCase):
 
     def test_without_boundaries_divergence_is_unknown(self):
         scene = conelane.Scene(CONES, (0, 0, 0), ground_truth=TRUTH)
-        self.assertIsNone(conelane.score(scene, conelane.Detector("front").detect_scene(scene)).usable)
+        self.assertIsNone(conelane.score(scene, conelane.Detector("front").detect_scene(scene, time_limit_ms=None)).usable)
 
     def test_faults(self):
-        lane = conelane.Detector("front").detect(CONES, (0, 0, 0))
+        lane = conelane.Detector("front").detect(CONES, (0, 0, 0), time_limit_ms=None)
         with self.assertRaises(ValueError):
             conelane.score(conelane.Scene(CONES, (0, 0, 0)), lane)  # no ground truth
         other = conelane.Scene(CONES[:4], (0, 0, 0), ground_truth=([0, 2], [1, 3]))

@@ -164,11 +164,11 @@ class All(unittest.TestCase):
     def test_a_message_is_what_a_detector_takes(self):
         track, = conelane.load_tracks("generated:circle")
         scene = conelane.generate_scenes(track, every_m=20.0, with_color=True)[0]
-        expected = {tuple(place) for place in conelane.Detector("front").detect_scene(scene).left_points}
+        expected = {tuple(place) for place in conelane.Detector("front").detect_scene(scene, time_limit_ms=None).left_points}
         for to, back in ((messages.to_eufs, messages.from_eufs), (messages.to_fs_track, messages.from_fs_track),
                          (messages.to_pacsim, messages.from_pacsim)):
             cones = back(to(scene.cones, scene.colors))
-            lane = conelane.Detector("front").detect(**cones._asdict(), pose=scene.pose)
+            lane = conelane.Detector("front").detect(**cones._asdict(), pose=scene.pose, time_limit_ms=None)
             self.assertEqual({tuple(place) for place in lane.left_points}, expected)
 
     def test_empty_messages(self):

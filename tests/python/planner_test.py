@@ -109,7 +109,7 @@ class Straight(unittest.TestCase):
         plan = conelane.Planner(default_width_m=5.0).update(right, (0, 0, 0), 0.0, time_limit_ms=None)
         self.assertTrue(plan.lane.left_inferred)
         np.testing.assert_allclose(plan.lane.centre_line[:, 5:].sum(axis=1), 5.0, atol=1e-6)
-        lane = conelane.Detector("front").detect(right, (0, 0, 0))
+        lane = conelane.Detector("front").detect(right, (0, 0, 0), time_limit_ms=None)
         self.assertEqual((lane.drivable().left_inferred, lane.drivable().right_inferred), (True, False))
         np.testing.assert_array_equal(lane.drivable(default_width_m=4.0).centre_line, lane.centre_line(usual_width_m=4.0))
 

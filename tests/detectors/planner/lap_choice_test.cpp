@@ -4,6 +4,7 @@
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
 #include "detectors/planner/planners.hpp"
+#include "tests/support/no_time_limit.hpp"
 #include "tests/support/planner_frames.hpp"
 #include "tests/support/straight_line.hpp"
 #include "tests/support/testing.hpp"
@@ -281,12 +282,14 @@ TEST(LapPlanner, InLaterLapsTheCourseReplacesACandidateThatLeavesItFartherOn) {
                          }));
     int i = 0;
     for (; s_m < oval.course().lap_m + 20.0; ++i, s_m += 0.6) {
-        ASSERT_EQ(planner->update(oval.frame(s_m, 0.1 * i, false), {}).state, PlanState::following) << s_m;
+        ASSERT_EQ(planner->update(oval.frame(s_m, 0.1 * i, false), tests::kNoTimeLimit).state,
+                  PlanState::following)
+            << s_m;
     }
     ASSERT_TRUE(planner->course());
     is_wrong = true;
     for (int wrong = 1; wrong <= 4; ++wrong, ++i, s_m += 0.6) {
-        const Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), {});
+        const Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), tests::kNoTimeLimit);
         EXPECT_EQ(plan.state, PlanState::following) << "the cones confirm the course, frame " << wrong;
         EXPECT_GT(plan.lane.length_m, 15.0);
         EXPECT_LT(tests::farthest_from_middle_m(oval.course(), s_m, plan.lane), 0.5);
@@ -316,7 +319,7 @@ TEST(LapPlanner, AWrongLaneOfTheFirstLapIsLeftForATrustedOneAndForgotten) {
     bool is_told = false;
     double least_m = 100.0;  // trusted in the third lap
     for (int i = 0; s_m < 3.0 * lap_m - 1.0; ++i, s_m += 0.6) {
-        Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), {});
+        Plan plan = planner->update(oval.frame(s_m, 0.1 * i, true), tests::kNoTimeLimit);
         if (!is_in_wrong(s_m)) continue;
         const auto lap = static_cast<std::size_t>(s_m / lap_m);
         std::erase_if(plan.lane.points, [](const DrivablePoint& point) { return point.s_m > 6.0; });
