@@ -90,7 +90,7 @@ class Engines(unittest.TestCase):
     @classmethod
     def solved(cls, solver, *options):
         cls.run_program("solve", "--solver", solver, "--scenes", cls.path("s.scenes.jsonl"), "--params", cls.path("parameters.json"),
-                        "--time-limit", "20000", "--out", cls.path("o.solutions.jsonl"), *options)
+                        "--time-limit", "120000", "--out", cls.path("o.solutions.jsonl"), *options)
         return lines_of(cls.path("o.solutions.jsonl"))
 
     def check(self, name):
