@@ -246,7 +246,6 @@ TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
         std::uint64_t seed;
         double d_near_m;
     };
-    int started = 0;
     for (const auto& [seed, d_near_m] : {Drawn{2, 8.0}, Drawn{3, 8.0}, Drawn{7, 5.0}}) {
         for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", pairing " << static_cast<int>(pairing));
@@ -254,8 +253,10 @@ TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
             RldParameters parameters{.d_near = d_near_m, .pairing = pairing};
             const LaneGraphProblem problem = make_problem(scene, parameters);
             const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
-            const RldReport first = solver->solve(problem, {.limits = {.time_limit_ms = 150.0}});
-            if (!first.lane_graph) continue;
+            RldReport first;
+            for (double limit_ms = 150.0; !first.lane_graph && limit_ms < 1e5; limit_ms *= 2.0)
+                first = solver->solve(problem, {.limits = {.time_limit_ms = limit_ms}});
+            ASSERT_TRUE(first.lane_graph);
             const RldReport again =
                 solver->solve(problem, {.limits = {.time_limit_ms = 300.0}, .start = &*first.lane_graph});
             EXPECT_EQ(again.message, "");
@@ -264,10 +265,8 @@ TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
             EXPECT_TRUE(check(scene, parameters, *again.lane_graph,
                               {again.status == SolveStatus::optimal, *again.objective, again.bound})
                             .violations.empty());
-            ++started;
         }
     }
-    EXPECT_EQ(started, 6);
 }
 
 }  // namespace
