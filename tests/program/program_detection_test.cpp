@@ -16,8 +16,9 @@ TEST_F(Program, AStreamIsAnsweredLineByLine) {
     const std::string in = path("in").string();
     const std::string out = path("out").string();
     ASSERT_EQ(std::system(("mkfifo " + in + " " + out).c_str()), 0);
-    ASSERT_EQ(std::system(("(timeout 60 " + conelane_program() + " detect --method clc --time-limit 60000 --scenes - --out - <" +
-                           in + " >" + out + "; echo $? >" + path("code").string() + ") &")
+    ASSERT_EQ(std::system(("(timeout 60 " + conelane_program() +
+                           " detect --method clc --time-limit 60000 --scenes - --out - <" + in + " >" + out +
+                           "; echo $? >" + path("code").string() + ") &")
                               .c_str()),
               0);
     std::ofstream scenes(in);
