@@ -163,7 +163,7 @@ class Node(unittest.TestCase):
             x, y, yaw = x + step_m * math.cos(yaw + turn / 2), y + step_m * math.sin(yaw + turn / 2), yaw + turn
             driven_m += step_m
         values = {entry.key: entry.value for entry in status.values}
-        self.assertEqual(values["lap"], "1")  # it is driven
+        self.assertEqual(values["lap"], "1")  # one lap is complete
         self.assertGreater(float(values["safe_m"]), 3.0)
         self.assertGreater(int(values["cones"]), 8)
         lines = {(one.ns, one.id): one for one in markers.markers if one.action == Marker.ADD}
@@ -204,7 +204,7 @@ class Node(unittest.TestCase):
         print(f"{len(off_m)} of {len(run.frames)} frames of the bag were answered as by conelane.bags and a planner")
         self.assertGreater(len(off_m), 20)  # how many depends on the load of the machine
         self.assertLess(statistics.median(off_m), 1e-5)
-        self.assertLess(max(off_m), 0.05)  # both round transforms in their own way, and a choice by a threshold may tip
+        self.assertLess(max(off_m), 0.05)  # the two round transforms differently, so a choice by a threshold may differ
 
 
 if __name__ == "__main__":
