@@ -123,10 +123,18 @@ std::vector<Corner> legs(int count, double length_m, double pitch_m, LayoutDraw&
     return corners;
 }
 
-/// The corners of a star-shaped polygon, each rounded off as far as its sides allow; nothing if that is
-/// less than `least_radius_m`.
-std::optional<std::vector<Corner>> loop(int count, double radius_m, double least_radius_m, LayoutDraw& draw) {
-    constexpr double kMaxRadius_m = 16.0;
+/// The radii of a loop: of its polygon around its centre, and of its arcs.
+struct LoopRadii {
+    double least_m;
+    double most_m = 16.0;
+    double nearest_m = 28.0;
+    double farthest_m = 38.0;
+};
+
+/// The corners of a star-shaped polygon, each rounded off as far as its sides and `most_m` allow; nothing if
+/// that is less than `least_m`.
+std::optional<std::vector<Corner>> loop(int count, double radius_m, const LoopRadii& radii,
+                                        LayoutDraw& draw) {
     std::vector<Point> vertices;
     for (int k = 0; k < count; ++k) {
         const double angle_rad = 2.0 * std::numbers::pi * (k + draw.uniform(-0.2, 0.2)) / count;
@@ -142,16 +150,17 @@ std::optional<std::vector<Corner>> loop(int count, double radius_m, double least
         const double half_turn_rad = std::abs(turning_angle(before, after)) / 2.0;
         const double room_m = 0.48 * std::min(before.norm(), after.norm());
         const double fitting_m = room_m / std::max(std::tan(half_turn_rad), 1e-3);
-        if (fitting_m < least_radius_m) return std::nullopt;
-        corners.push_back({vertices[k], std::floor(10.0 * std::min(fitting_m, kMaxRadius_m)) / 10.0});
+        if (fitting_m < radii.least_m) return std::nullopt;
+        corners.push_back({vertices[k], std::floor(10.0 * std::min(fitting_m, radii.most_m)) / 10.0});
     }
     return corners;
 }
 
-std::vector<Corner> drawn_loop(int fewest, int most, double least_radius_m, LayoutDraw& draw) {
+std::vector<Corner> drawn_loop(int fewest, int most, const LoopRadii& radii, LayoutDraw& draw) {
     while (true) {
         const int count = draw.integer(fewest, most);
-        if (auto corners = loop(count, draw.uniform(28.0, 38.0), least_radius_m, draw)) return *corners;
+        const double radius_m = draw.uniform(radii.nearest_m, radii.farthest_m);
+        if (auto corners = loop(count, radius_m, radii, draw)) return *corners;
     }
 }
 
@@ -162,21 +171,24 @@ constexpr double kStrayOutside_m = 1.4;    ///< at least, from the mean boundary
 constexpr double kStrayFarthest_m = 10.0;  ///< from the centre line at most
 constexpr double kStrayClearance_m = 1.0;  ///< from every other cone at least
 
-/// Half the lane width along a path: two sinusoids around the mean, with whole numbers of periods.
+/// Half the lane width along a path, which must outlive it: two sinusoids around the mean, with whole numbers
+/// of periods, and what bends add.
 class HalfWidth {
   public:
-    HalfWidth(double path_length_m, const TrackStyle& style, Draw& draw)
-        : swells_{{{style.slow_swell_m, std::floor(draw.uniform(2.0, 4.0)), draw.uniform(0.0, 1.0)},
+    HalfWidth(const RoundedPath& path, const TrackStyle& style, Draw& draw)
+        : path_(path),
+          swells_{{{style.slow_swell_m, std::floor(draw.uniform(2.0, 4.0)), draw.uniform(0.0, 1.0)},
                    {style.quick_swell_m, std::floor(draw.uniform(5.0, 9.0)), draw.uniform(0.0, 1.0)}}},
           mean_width_m_(style.mean_width_m),
-          path_length_m_(path_length_m) {}
+          wider_in_bends_m_(style.wider_in_bends_m) {}
 
     [[nodiscard]] double at(double arc_length_m) const {
         double width_m = mean_width_m_;
         for (const Swell& swell : swells_) {
-            const double periods = swell.periods * arc_length_m / path_length_m_ + swell.phase;
+            const double periods = swell.periods * arc_length_m / path_.length_m() + swell.phase;
             width_m += swell.amplitude_m * std::sin(2.0 * std::numbers::pi * periods);
         }
+        if (wider_in_bends_m_ > 0.0) width_m += wider_in_bends_m_ * bend_at(arc_length_m);
         return width_m / 2.0;
     }
 
@@ -186,9 +198,21 @@ class HalfWidth {
         double periods;
         double phase;
     };
+    /// The mean curvature of 8 m of the path, as a share of that of a bend of 5 m; at most 1.
+    [[nodiscard]] double bend_at(double arc_length_m) const {
+        constexpr int kSteps = 10;
+        constexpr double kStep_m = 0.4;
+        constexpr double kSharp_1_m = 0.2;
+        double sum_1_m = 0.0;
+        for (int step = -kSteps; step <= kSteps; ++step)
+            sum_1_m += std::abs(path_.at(arc_length_m + step * kStep_m).curvature_1_m);
+        return std::min(1.0, sum_1_m / (2 * kSteps + 1) / kSharp_1_m);
+    }
+
+    const RoundedPath& path_;
     std::array<Swell, 2> swells_;
     double mean_width_m_;
-    double path_length_m_;
+    double wider_in_bends_m_;
 };
 
 /// The point `left_m` to the left of a path.
@@ -426,7 +450,8 @@ std::span<const TrackLayout> track_layouts() {
 }
 
 std::span<const std::string_view> drawn_layout_names() {
-    static constexpr std::array<std::string_view, 4> kNames{"legs", "tight_hairpins", "gates", "wide"};
+    static constexpr std::array<std::string_view, 7> kNames{
+        "legs", "tight_hairpins", "gates", "wide", "wide_hairpins", "sparse", "sharp"};
     return kNames;
 }
 
@@ -462,7 +487,33 @@ TrackLayout draw_layout(std::string_view name, std::uint64_t seed) {
         style.widest_spacing_m = draw.uniform(3.0, 4.2);
         style.gates = 2;
         layout.stray_cones = static_cast<std::size_t>(draw.integer(4, 12));
-        layout.centre_line = drawn_loop(8, 10, 6.5, draw);
+        layout.centre_line = drawn_loop(8, 10, {6.5}, draw);
+    } else if (name == "wide_hairpins") {
+        style.mean_width_m = draw.uniform(3.2, 4.4);
+        style.slow_swell_m = 0.1;
+        style.quick_swell_m = 0.1;
+        style.wider_in_bends_m = draw.uniform(2.5, 3.5);
+        style.widest_spacing_m = draw.uniform(2.8, 4.8);
+        style.spacing_per_curvature_m = draw.uniform(0.0, 2.0);
+        const double hairpin_m = style.mean_width_m + style.wider_in_bends_m;
+        const int count = draw.integer(0, 1) == 0 ? 4 : 6;
+        const double length_m = draw.uniform(34.0, 46.0);
+        layout.centre_line = legs(count, length_m, hairpin_m + draw.uniform(3.0, 6.5), draw);
+    } else if (name == "sparse") {
+        style.mean_width_m = draw.uniform(2.9, 3.8);
+        style.slow_swell_m = 0.1;
+        style.quick_swell_m = 0.1;
+        style.widest_spacing_m = draw.uniform(4.0, 5.0);
+        style.spacing_per_curvature_m = draw.uniform(-4.5, -2.5);
+        layout.centre_line = drawn_loop(6, 9, {8.0, 16.0, 36.0, 50.0}, draw);
+    } else if (name == "sharp") {
+        style.mean_width_m = draw.uniform(2.9, 4.0);
+        style.slow_swell_m = 0.1;
+        style.quick_swell_m = 0.1;
+        style.widest_spacing_m = draw.uniform(2.5, 4.5);
+        style.spacing_per_curvature_m = draw.uniform(0.3, 2.0);
+        const double radius_m = style.mean_width_m / 2.0 + draw.uniform(0.3, 1.5);
+        layout.centre_line = drawn_loop(5, 8, {radius_m, radius_m, 20.0, 32.0}, draw);
     } else {
         style.mean_width_m = draw.uniform(5.2, 5.5);
         style.slow_swell_m = 0.3;
@@ -470,7 +521,7 @@ TrackLayout draw_layout(std::string_view name, std::uint64_t seed) {
         style.widest_spacing_m = draw.uniform(4.8, 5.4);
         style.spacing_per_curvature_m = 3.0;
         layout.stray_cones = static_cast<std::size_t>(draw.integer(4, 12));
-        layout.centre_line = drawn_loop(7, 9, 8.0, draw);
+        layout.centre_line = drawn_loop(7, 9, {8.0}, draw);
     }
     if (draw.integer(0, 1) == 1) {
         for (Corner& corner : layout.centre_line) corner.at.y() = -corner.at.y();  // driven clockwise
@@ -492,7 +543,7 @@ Track generate_track(const std::string& name, std::uint64_t seed) {
     track.closed = layout.closed;
     const RoundedPath path(layout.centre_line, layout.closed);
     Draw draw(name, seed);
-    const HalfWidth half_width(path.length_m(), layout.style, draw);
+    const HalfWidth half_width(path, layout.style, draw);
     const std::vector<Gate> gates = draw_gates(path, layout.style.gates, draw);
     track.left = append_boundary(track, path, layout.style, half_width, gates, 1.0, draw);
     track.right = append_boundary(track, path, layout.style, half_width, gates, -1.0, draw);

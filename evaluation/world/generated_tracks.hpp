@@ -46,11 +46,13 @@ class RoundedPath {
 /// Width of a lane and arrangement of its cones.
 struct TrackStyle {
     double mean_width_m = 4.0;
-    double slow_swell_m = 0.5;             ///< amplitude of the width's two or three swells a lap
-    double quick_swell_m = 0.25;           ///< amplitude of its five to eight swells a lap
-    double lateral_jitter_m = 0.08;        ///< of a cone off the ideal boundary
-    double widest_spacing_m = 4.05;        ///< expected on straights
-    double spacing_per_curvature_m = 5.0;  ///< a bend of this radius halves the spacing
+    double slow_swell_m = 0.5;       ///< amplitude of the width's two or three swells a lap
+    double quick_swell_m = 0.25;     ///< amplitude of its five to eight swells a lap
+    double wider_in_bends_m = 0.0;   ///< added to the width in bends of 5 m, less in wider ones
+    double lateral_jitter_m = 0.08;  ///< of a cone off the ideal boundary
+    double widest_spacing_m = 4.05;  ///< expected on straights
+    /// A bend of this radius halves the spacing. Negative: one of twice this radius doubles it.
+    double spacing_per_curvature_m = 5.0;
     /// Gates: a pair of big orange cones on each side, in a gap of the boundaries.
     std::size_t gates = 0;
 };
@@ -73,7 +75,10 @@ struct TrackLayout {
 /// - `legs`: four parallel legs or six, their boundaries 3 to 6 m apart;
 /// - `tight_hairpins`: the same with a lane of 2.8 to 3.2 m, cones every 1.5 to 2 m, radii of about 3 m;
 /// - `gates`: a loop with two gates of big orange cones, each in a gap of the boundaries of 10 to 12 m;
-/// - `wide`: a loop of 4.8 to 6 m with cones up to 6 m apart.
+/// - `wide`: a loop of 4.8 to 6 m with cones up to 6 m apart;
+/// - `wide_hairpins`: four parallel legs or six, the lane twice as wide in the hairpins, up to 8 m;
+/// - `sparse`: a loop with cones 4 to 5.5 m apart, in bends 6 to 11 m;
+/// - `sharp`: a loop of corners whose inner boundary turns at 0.3 to 1.5 m.
 [[nodiscard]] std::span<const std::string_view> drawn_layout_names();
 
 /// Precondition: the name is one of drawn_layout_names.
@@ -85,7 +90,7 @@ struct TrackLayout {
 /// A made-up track: cones on both sides of the layout's centre line. On the fixed layouts, within the Formula
 /// Student rules: the lane 3 to 5 m wide, the width swelling along the lap; cones of one side at most 5 m
 /// apart, uneven, denser in tight bends and a little off the ideal boundary. On the drawn ones lanes of 2.8
-/// to 6 m, cones 1.5 to 6.3 m apart, legs 3 to 6 m from each other, and gates. Left cones are blue, right
+/// to 8 m, cones 1.5 to 11 m apart, legs 3 to 6 m from each other, and gates. Left cones are blue, right
 /// ones yellow, those of gates orange; stray ones are of unknown color and belong to no boundary.
 /// Coordinates are multiples of 0.1 mm, the same on any machine. The track is named `name`, `name@seed` where
 /// the seed is not 0. Throws InvalidInput if the name is unknown.
