@@ -1,12 +1,11 @@
-#include "conelane/check.hpp"
 #include "conelane/rld_parameter_sets.hpp"
-#include "conelane/solve_scene.hpp"
+#include "detectors/parameters/learned_costs_reader.hpp"
+#include "detectors/recipe.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
 #include "experiments/methods/method.hpp"
-#include "experiments/studies/lane_graph_beam.hpp"
+#include "experiments/studies/scene_objective.hpp"
 #include "experiments/studies/solve_rows.hpp"
-#include "solvers/registry.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,25 +16,19 @@
 namespace conelane::experiments {
 namespace {
 
-/// An objective: (29) with the costs that the parameters add to it.
-struct NamedCosts {
-    std::string name = "default";
-    RldParameters parameters;
-};
-
 struct OptimalityOptions {
     std::string detector = "clc";        ///< one that enumerates
     std::string beside = "front";        ///< one whose lanes are compared with the optimum; none if empty
     std::optional<std::size_t> nearest;  ///< cone set of all; all cones if absent
     std::vector<NamedCosts> costs{{}};   ///< at least one
-    std::size_t beam_width = 100;        ///< see beam_lane_graph
+    std::size_t beam_width = 100;        ///< see beams.hpp
     double time_limit_ms = 400.0;        ///< of the exact search, a scene
     unsigned threads = 1;
 };
 
 /// A lane under an objective and against the ground truth.
 struct JudgedLane {
-    std::optional<double> objective;  ///< absent if RLD's constraints forbid the lane
+    std::optional<double> objective;  ///< absent if the constraints forbid the lane
     Category category = Category::none;
     double iou = 0.0;
     std::optional<bool> usable;  ///< absent where no boundaries are known
@@ -48,7 +41,7 @@ struct OptimalityRow {
     SolveStatus status = SolveStatus::error;  ///< of the exact search
     std::optional<double> bound;
     std::size_t candidates = 0;
-    std::size_t feasible = 0;             ///< of them, under RLD's constraints
+    std::size_t feasible = 0;             ///< of them, under the constraints
     std::optional<JudgedLane> optimum;    ///< the best lane that the exact search found
     std::optional<JudgedLane> beam;       ///< of the beam search under the same objective
     std::optional<JudgedLane> candidate;  ///< the feasible one of least objective; of equal ones the first
@@ -83,10 +76,7 @@ constexpr DetectionLimits kWholeSearch{std::numeric_limits<double>::infinity(), 
 class Lap {
   public:
     Lap(const TrackBoundariesByName& tracks, const OptimalityOptions& options)
-        : tracks_(tracks),
-          options_(options),
-          solver_(find_rld_solver("path-pair")->make(Formulation::tight)),
-          detector_(made(options.detector, options)) {
+        : tracks_(tracks), options_(options), detector_(made(options.detector, options)) {
         if (!options.beside.empty()) beside_ = made(options.beside, options);
     }
 
@@ -100,112 +90,73 @@ class Lap {
         std::optional<LaneAnswer> beside;
         if (beside_) beside = beside_->detect(annotated.scene, kWholeSearch);
         for (std::size_t k = 0; k < rows.size(); ++k) {
-            const NamedCosts& costs = options_.costs[k];
             OptimalityRow& row = rows[k];
             row.scene = &annotated;
-            row.costs = costs.name;
-            const auto [problem, report, solved_ms] =
-                solve_scene(*solver_, cones, costs.parameters, {.limits = {options_.time_limit_ms}});
-            if (report.status == SolveStatus::error) throw InvalidInput(cones.id, report.message);
-            take_optimum(row, report, costs, cones);
-            if (answer.status == LaneStatus::found)
-                row.choice = with_objective(answer.lane, problem, cones, annotated);
-            if (beside && beside->status == LaneStatus::found)
-                row.beside = with_objective(beside->lane, problem, cones, annotated);
-            compare_candidates(row, answer.enumeration->candidates, problem, cones);
-            if (costs.parameters.pairing == Pairing::near_far) search_beam(row, problem, cones);
+            row.costs = options_.costs[k].name;
+            const std::unique_ptr<SceneObjective> objective = objective_of(cones, options_.costs[k]);
+            const ProvenLane optimum = objective->optimum(options_.time_limit_ms);
+            row.status = optimum.status;
+            row.bound = optimum.bound;
+            if (optimum.lane) row.optimum = judged(optimum.lane->lane, annotated, optimum.lane->cost);
+            const auto with_cost = [&](const LaneAnswer& of) -> std::optional<JudgedLane> {
+                if (of.status != LaneStatus::found) return std::nullopt;
+                return judged(of.lane, annotated, objective->cost(of.lane));
+            };
+            row.choice = with_cost(answer);
+            if (beside) row.beside = with_cost(*beside);
+            compare_candidates(row, answer.enumeration->candidates, *objective, cones);
+            if (const auto lane = objective->beam(options_.beam_width))
+                row.beam = found_by_search(row, {*lane, objective->cost(*lane).value()}, *objective,
+                                           "lane of the beam");
         }
     }
 
   private:
-    void take_optimum(OptimalityRow& row, const RldReport& report, const NamedCosts& costs,
-                      const Scene& cones) const {
-        row.status = report.status;
-        row.bound = report.bound;
-        if (!report.lane_graph) return;
-        const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
-        require_accepted(check(cones, costs.parameters, *report.lane_graph, claim), cones.id, "optimum");
-        if (const auto lane = to_lane(*report.lane_graph, cones)) {
-            row.optimum = judged(*lane, *row.scene);
-            row.optimum->objective = report.objective;
-        }
-    }
-
     void compare_candidates(OptimalityRow& row, const std::vector<LaneCandidate>& candidates,
-                            const LaneGraphProblem& problem, const Scene& cones) const {
+                            const SceneObjective& objective, const Scene& cones) const {
         std::set<std::vector<Edge>> met;
-        const Lane* best = nullptr;
-        double least = 0.0;
+        std::optional<PricedLane> best;
         for (const LaneCandidate& candidate : candidates) {
             const auto graph = lane_graph_of(candidate.lane, cones);
             if (!graph || !met.insert(graph->edges).second) continue;
             ++row.candidates;
-            if (!is_feasible(problem, *graph)) continue;
+            const std::optional<double> cost = objective.cost(candidate.lane);
+            if (!cost) continue;
             ++row.feasible;
-            const double value = objective(problem, *graph);
-            if (best != nullptr && value >= least) continue;
-            best = &candidate.lane;
-            least = value;
+            if (!best || *cost < best->cost) best = {candidate.lane, *cost};
         }
-        if (best == nullptr) return;
-        row.candidate =
-            found_by_search(row, *best, *lane_graph_of(*best, cones), least, problem, cones, "candidate");
-    }
-
-    void search_beam(OptimalityRow& row, const LaneGraphProblem& problem, const Scene& cones) const {
-        const auto graph = beam_lane_graph(problem, options_.beam_width);
-        if (!graph) return;
-        if (const auto lane = to_lane(*graph, cones))
-            row.beam = found_by_search(row, *lane, *graph, objective(problem, *graph), problem, cones,
-                                       "lane of the beam");
+        if (best) row.candidate = found_by_search(row, *best, objective, "candidate");
     }
 
     /// Throws where it contradicts the checker or what was proven.
-    [[nodiscard]] JudgedLane found_by_search(const OptimalityRow& row, const Lane& lane,
-                                             const LaneGraph& graph, double value,
-                                             const LaneGraphProblem& problem, const Scene& cones,
-                                             const char* what) const {
-        require_accepted(check(cones, problem.parameters, graph, {false, value, {}}), cones.id, what);
+    [[nodiscard]] JudgedLane found_by_search(const OptimalityRow& row, const PricedLane& lane,
+                                             const SceneObjective& objective, const char* what) const {
+        objective.check(lane, what);
+        const std::string& scene = row.scene->scene.id;
         if (row.status == SolveStatus::infeasible) {
             throw InvalidInput(
-                cones.id,
-                fmt::format("a {} is feasible, but the exact search proved that there is none", what));
+                scene, fmt::format("a {} is feasible, but the exact search proved that there is none", what));
         }
-        if (row.is_proven() && value < *row.optimum->objective - kObjectiveTolerance) {
-            throw InvalidInput(cones.id, fmt::format("a {} has the objective {}, below the proven optimum {}",
-                                                     what, value, *row.optimum->objective));
+        if (row.is_proven() && lane.cost < *row.optimum->objective - kObjectiveTolerance) {
+            throw InvalidInput(scene, fmt::format("a {} has the objective {}, below the proven optimum {}",
+                                                  what, lane.cost, *row.optimum->objective));
         }
-        JudgedLane result = judged(lane, *row.scene);
-        result.objective = value;
-        return result;
+        return judged(lane.lane, *row.scene, lane.cost);
     }
 
-    [[nodiscard]] JudgedLane with_objective(const Lane& lane, const LaneGraphProblem& problem,
-                                            const Scene& cones, const AnnotatedScene& annotated) const {
-        JudgedLane result = judged(lane, annotated);
-        const auto graph = lane_graph_of(lane, cones);
-        if (graph && is_feasible(problem, *graph)) result.objective = objective(problem, *graph);
-        return result;
-    }
-
-    [[nodiscard]] JudgedLane judged(const Lane& lane, const AnnotatedScene& annotated) const {
+    [[nodiscard]] JudgedLane judged(const Lane& lane, const AnnotatedScene& annotated,
+                                    std::optional<double> cost) const {
         const auto track = tracks_.find(annotated.track);
         LaneAnswer answer;
         answer.status = LaneStatus::found;
         answer.lane = lane;
         const SceneScore result = score(annotated, answer, 0.0, options_.nearest,
                                         track == tracks_.end() ? nullptr : &track->second);
-        return {{}, result.category, result.iou.value_or(0.0), result.usable()};
-    }
-
-    static void require_accepted(const CheckReport& report, const std::string& scene, const char* what) {
-        if (report.violations.empty()) return;
-        throw InvalidInput(scene, fmt::format("the checker rejects the {}: {}", what, report.violations[0]));
+        return {cost, result.category, result.iou.value_or(0.0), result.usable()};
     }
 
     const TrackBoundariesByName& tracks_;
     const OptimalityOptions& options_;
-    std::unique_ptr<RldSolver> solver_;
     std::unique_ptr<LaneDetector> detector_;
     std::unique_ptr<LaneDetector> beside_;
 };
@@ -381,6 +332,13 @@ std::vector<OptimalityRow> optimality_rows(const SceneSet& set, const Optimality
     return rows;
 }
 
+StripParameters strip_parameters(const std::string& weights) {
+    StripParameters parameters = driving_strip_parameters();
+    parameters.costs =
+        weights == "shipped" ? parse_strip_costs(kStripWeightsFile) : read_strip_costs(weights);
+    return parameters;
+}
+
 class OptimalityStudy : public SceneStudy {
   public:
     OptimalityStudy()
@@ -389,8 +347,10 @@ class OptimalityStudy : public SceneStudy {
                "how far from the optimum of RLD's objective are the lanes of graph searches, and does the "
                "optimum drive better?",
                "Every scene with a ground truth is solved by path-pair on the cone set that the methods get, "
-               "under each of the named costs. Of the candidates of the enumerating method those that RLD's "
-               "constraints allow are compared by the objective; a beam search over the same costs, the "
+               "under each of the named costs, and by the exact search of strips under those of the strip. "
+               "Of "
+               "the candidates of the enumerating method those that the constraints allow are compared by "
+               "the objective; a beam search over the same costs, the "
                "answer of that method and that of another one are compared with the optimum too. Gap: "
                "(lane - optimum) / max(1, |optimum|). Quality: usable / success / IoU in %, of scenes with "
                "a proven optimum. Nothing is timed."}) {}
@@ -405,6 +365,9 @@ class OptimalityStudy : public SceneStudy {
                             fmt::join(rld_parameter_set_names(), ", ")))
             ->delimiter(',')
             ->capture_default_str();
+        command.add_option("--strip", strip_,
+                           "also the strip program, as objective `strip`: `shipped`, or a file of learned "
+                           "costs (JSON)");
         command.add_option("--pairing", pairing_, "overrides the pairing of the parameters")
             ->check(CLI::IsMember({"paper", "near_far"}));
         command.add_option("--method", options_.detector, "a method that enumerates")->capture_default_str();
@@ -426,6 +389,7 @@ class OptimalityStudy : public SceneStudy {
         options_.costs.clear();
         for (const std::string& name : costs_)
             options_.costs.push_back({name, ParameterSource{name == "default" ? "" : name, pairing_}.load()});
+        if (!strip_.empty()) options_.costs.push_back({"strip", strip_parameters(strip_)});
         const std::vector<OptimalityRow> rows = optimality_rows(set, options_);
         const std::vector<Group> groups = groups_of_rows(rows);
         StudyResult result{candidates_table(groups) + "\n" + quality_table(groups)};
@@ -436,6 +400,7 @@ class OptimalityStudy : public SceneStudy {
   private:
     std::vector<std::string> costs_{"default"};
     std::string pairing_;
+    std::string strip_;
     OptimalityOptions options_;
 };
 

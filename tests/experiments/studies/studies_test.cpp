@@ -275,15 +275,15 @@ TEST(FrontBeam, AProofTakesASearchThatLeavesNothingOut) {
 TEST(Optimality, ComparesLanesWithTheOptimaOfSeveralObjectives) {
     const SceneSet set = scenes_of({"generated:kidney", "generated:straight"}, 0.3, 25.0);
     const char* const options =
-        "--params default,shape,learned --beam-width 30 --time-limit 60000 --threads ";
+        "--params default,shape,learned --strip shipped --beam-width 30 --time-limit 60000 --threads ";
     const StudyResult result = measured("optimality", options + std::string("1"), set);
-    ASSERT_EQ(result.rows.size(), 3 * set.scenes.size());
+    ASSERT_EQ(result.rows.size(), 4 * set.scenes.size());
     std::map<std::string, std::size_t> compared;
     for (std::size_t k = 0; k < result.rows.size(); ++k) {
         const Json& row = result.rows[k];
         SCOPED_TRACE(row.dump());
-        EXPECT_EQ(row["scene"], set.scenes[k / 3].scene.id);
-        EXPECT_EQ(row["costs"], (std::vector<std::string>{"default", "shape", "learned"}[k % 3]));
+        EXPECT_EQ(row["scene"], set.scenes[k / 4].scene.id);
+        EXPECT_EQ(row["costs"], (std::vector<std::string>{"default", "shape", "learned", "strip"}[k % 4]));
         ASSERT_EQ(row["status"], "optimal");
         EXPECT_TRUE(row["optimum"].contains("usable"));
         EXPECT_EQ(row.contains("candidate"), row["feasible_candidates"] > 0U);
@@ -305,7 +305,7 @@ TEST(Optimality, ComparesLanesWithTheOptimaOfSeveralObjectives) {
             EXPECT_EQ(row["equal"], row["candidate"]["objective"].get<double>() - optimum <= 1e-6);
         }
         // The answers of methods do not know the objective.
-        EXPECT_EQ(row["beside"]["iou"], result.rows[k - k % 3]["beside"]["iou"]);
+        EXPECT_EQ(row["beside"]["iou"], result.rows[k - k % 4]["beside"]["iou"]);
     }
     for (const char* const name : {"beam", "candidate", "choice", "beside"})
         EXPECT_GT(compared[name], result.rows.size() / 2) << name;

@@ -1,4 +1,4 @@
-#include "experiments/studies/lane_graph_beam.hpp"
+#include "experiments/studies/beams.hpp"
 
 #include <array>
 #include <limits>
@@ -8,9 +8,9 @@
 namespace conelane::experiments {
 namespace {
 
-class Beam {
+class LaneGraphBeam {
   public:
-    Beam(const LaneGraphProblem& problem, std::size_t width) : problem_(problem), width_(width) {
+    LaneGraphBeam(const LaneGraphProblem& problem, std::size_t width) : problem_(problem), width_(width) {
         const std::size_t arcs = 2 * problem.edges.size();
         successions_.resize(arcs);
         excluded_.assign(problem.edges.size(), boost::dynamic_bitset<>(problem.edges.size()));
@@ -193,10 +193,113 @@ class Beam {
     std::optional<LaneGraph> best_;
 };
 
+class StripBeam {
+  public:
+    StripBeam(const StripProblem& problem, std::size_t width) : problem_(problem), width_(width) {}
+
+    std::optional<StripLane> run() {
+        std::vector<State> states = starts();
+        while (!states.empty()) states = grown(states);
+        return best_;
+    }
+
+  private:
+    struct State {
+        double cost = 0.0;  ///< without the ends
+        std::size_t rung = 0;
+        std::array<std::size_t, 2> in{};  ///< left first: places of the last edges; the degree is none
+        boost::dynamic_bitset<> cones;
+        StripLane lane;
+
+        [[nodiscard]] bool has_same_future(const State& other) const {
+            return rung == other.rung && in == other.in && cones == other.cones;
+        }
+    };
+    struct Move {
+        double cost;
+        std::size_t parent;
+        const StripTriangle* triangle;
+    };
+
+    [[nodiscard]] std::vector<State> starts() const {
+        std::vector<State> states;
+        for (std::size_t r = 0; r < problem_.rungs.size(); ++r) {
+            const StripRung& rung = problem_.rungs[r];
+            if (!rung.may_start) continue;
+            State& state = states.emplace_back();
+            state = {rung.start_cost,
+                     r,
+                     {problem_.degree(rung.left), problem_.degree(rung.right)},
+                     boost::dynamic_bitset<>(problem_.graph.cone_count),
+                     {{rung.left}, {rung.right}}};
+            state.cones.set(rung.left);
+            state.cones.set(rung.right);
+        }
+        std::ranges::stable_sort(states, {}, &State::cost);
+        if (states.size() > width_) states.resize(width_);
+        return states;
+    }
+
+    std::vector<State> grown(const std::vector<State>& states) {
+        std::vector<Move> moves;
+        for (std::size_t s = 0; s < states.size(); ++s) {
+            const State& state = states[s];
+            complete(state);
+            for (const StripTriangle& triangle : problem_.leaving(state.rung)) {
+                if (state.cones[problem_.entered(triangle)]) continue;
+                const double turn =
+                    problem_.step_cost(problem_.rungs[state.rung].of(triangle.is_left), triangle.is_left,
+                                       state.in[triangle.is_left ? 0 : 1], triangle.out);
+                if (turn < StripProblem::kForbidden)
+                    moves.push_back({state.cost + triangle.cost + turn, s, &triangle});
+            }
+        }
+        std::ranges::stable_sort(moves, {}, &Move::cost);
+        std::vector<State> result;
+        for (const Move& move : moves) {
+            if (result.size() == width_) break;
+            State state = after(states[move.parent], move);
+            if (std::ranges::none_of(result, [&](const State& met) { return met.has_same_future(state); }))
+                result.push_back(std::move(state));
+        }
+        return result;
+    }
+
+    [[nodiscard]] State after(State state, const Move& move) const {
+        const StripTriangle& triangle = *move.triangle;
+        const std::size_t cone = problem_.entered(triangle);
+        state.cost = move.cost;
+        state.rung = triangle.to;
+        state.in[triangle.is_left ? 0 : 1] = triangle.in;
+        state.cones.set(cone);
+        (triangle.is_left ? state.lane.left : state.lane.right).push_back(cone);
+        return state;
+    }
+
+    void complete(const State& state) {
+        if (!problem_.rungs[state.rung].may_end || state.lane.left.size() < 2 || state.lane.right.size() < 2)
+            return;
+        const double cost = state.cost + problem_.end_cost(state.lane.left.back(), state.in[0]) +
+                            problem_.end_cost(state.lane.right.back(), state.in[1]);
+        if (cost >= least_) return;
+        least_ = cost;
+        best_ = state.lane;
+    }
+
+    const StripProblem& problem_;
+    std::size_t width_;
+    double least_ = std::numeric_limits<double>::infinity();
+    std::optional<StripLane> best_;
+};
+
 }  // namespace
 
 std::optional<LaneGraph> beam_lane_graph(const LaneGraphProblem& problem, std::size_t width) {
-    return Beam(problem, width).run();
+    return LaneGraphBeam(problem, width).run();
+}
+
+std::optional<StripLane> beam_strip(const StripProblem& problem, std::size_t width) {
+    return StripBeam(problem, width).run();
 }
 
 }  // namespace conelane::experiments

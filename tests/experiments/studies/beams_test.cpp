@@ -1,11 +1,12 @@
-// The beam search that the exact search is compared with.
+// The beam searches that the exact searches are compared with.
 
-#include "experiments/studies/lane_graph_beam.hpp"
+#include "experiments/studies/beams.hpp"
 
 #include "conelane/rld_parameter_sets.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
+#include "solvers/strip/strip_solver.hpp"
 #include "tests/support/learned_costs.hpp"
-#include "tests/support/random_scenes.hpp"
+#include "tests/support/strip_scenes.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -67,6 +68,49 @@ TEST(LaneGraphBeam, ThatIsNarrowMissesOptima) {
 
 TEST(LaneGraphBeam, HasNothingToFindWithoutCones) {
     EXPECT_FALSE(beam_lane_graph(make_problem(Scene{}, {}), 10));
+}
+
+StripProblem random_strip_problem(std::uint64_t seed, int cones) {
+    return make_strip_problem(tests::random_scene(seed, cones), tests::random_strip_parameters(seed));
+}
+
+TEST(StripBeam, ThatLeavesNothingOutFindsTheOptimum) {
+    StripSolver solver;
+    int with_lane = 0;
+    int without = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const StripProblem problem = random_strip_problem(seed, seed % 2 == 0 ? 8 : 5);
+        const StripReport optimum = solver.solve(problem, {});
+        const auto found = beam_strip(problem, 1'000'000);
+        ASSERT_EQ(found.has_value(), optimum.status == SolveStatus::optimal);
+        ++(found ? with_lane : without);
+        if (!found) continue;
+        EXPECT_NEAR(cheapest_strip(problem, *found).value().cost, *optimum.objective, 1e-9);
+    }
+    EXPECT_GT(with_lane, 20);
+    EXPECT_GT(without, 3);
+}
+
+TEST(StripBeam, ThatIsNarrowMissesOptima) {
+    StripSolver solver;
+    int worse = 0;
+    int found_some = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const StripProblem problem = random_strip_problem(seed, 16);
+        const auto found = beam_strip(problem, 2);
+        if (!found) continue;
+        ++found_some;
+        const StripReport optimum = solver.solve(problem, {});
+        ASSERT_EQ(optimum.status, SolveStatus::optimal);
+        const double cost = cheapest_strip(problem, *found).value().cost;
+        EXPECT_GE(cost, *optimum.objective - 1e-9);
+        if (cost > *optimum.objective + 1e-6) ++worse;
+        EXPECT_EQ(beam_strip(problem, 2), found);
+    }
+    EXPECT_GT(found_some, 20);
+    EXPECT_GT(worse, 5);
 }
 
 }  // namespace
