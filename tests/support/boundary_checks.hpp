@@ -38,10 +38,16 @@ inline double clearance_m(const std::vector<Point>& a, const std::vector<Point>&
 /// Distance of each vertex to the left of the boundary, negative to its right [m].
 inline std::vector<double> left_offsets_m(const std::vector<Point>& vertices,
                                           const std::vector<Point>& boundary, bool closed) {
+    const std::vector<Segment> all = segments(boundary, closed);
     std::vector<double> result;
     for (const Point& vertex : vertices) {
         const PolylineFoot foot = foot_on_polyline(vertex, boundary, closed);
-        const Point along = boundary[(foot.segment + 1) % boundary.size()] - boundary[foot.segment];
+        // At a corner the mean direction tells the sides apart, that of one segment does not.
+        Point along(0.0, 0.0);
+        for (const Segment& segment : all) {
+            if (segment_distance(segment, {foot.point, foot.point}).distance_m < 1e-9)
+                along += (segment.to - segment.from).normalized();
+        }
         const double left = cross(along, vertex - boundary[foot.segment]) >= 0.0 ? 1.0 : -1.0;
         result.push_back(left * foot.distance_m);
     }

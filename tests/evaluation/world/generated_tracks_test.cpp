@@ -24,7 +24,7 @@ Limits limits_of(const std::string& track) {
     if (layout == "tight_hairpins") return {0.9, 2.6, 2.5, 3.6, 0.1, 2.4};
     if (layout == "gates") return {0.3, 6.4, 2.5, 5.0, 0.8, 3.5};
     if (layout == "wide") return {2.4, 6.4, 4.2, 6.3, 0.6, 3.5};
-    if (layout == "wide_hairpins") return {1.5, 5.4, 2.7, 8.6, 1.5, 2.4};
+    if (layout == "wide_hairpins") return {1.2, 5.4, 2.7, 8.6, 1.5, 2.4};
     if (layout == "sparse") return {2.8, 12.5, 2.3, 4.4, 0.2, 3.5};
     if (layout == "sharp") return {0.4, 5.0, 2.3, 6.0, 0.2, 2.4};
     return {};
