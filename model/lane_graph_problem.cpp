@@ -124,29 +124,6 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
             .high_cost = !within(spacing_cost, p.s_crit) || length < kMinEdge_m};
 }
 
-/// By cone: the distance of its k-th nearest other cone; infinite if there is none within max_m, or k is 0.
-/// A cone j is among the k nearest of i if fewer than k cones are nearer to i: if within(D_ij, reach_i).
-std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m) {
-    const std::size_t n = scene.cones.size();
-    std::vector<double> reach_m(n, std::numeric_limits<double>::infinity());
-    if (!(k > 0.0)) return reach_m;
-    const auto rank = static_cast<std::size_t>(std::ceil(k));
-    const double longest_m = max_m + kMargin_m;
-    std::vector<double> distance_m;
-    for (std::size_t i = 0; i < n; ++i) {
-        distance_m.clear();
-        for (std::size_t j = 0; j < n; ++j) {
-            const double squared = (scene.cones[j].position - scene.cones[i].position).squaredNorm();
-            if (j != i && squared <= longest_m * longest_m) distance_m.push_back(std::sqrt(squared));
-        }
-        if (distance_m.size() < rank) continue;
-        const auto nth = distance_m.begin() + static_cast<std::ptrdiff_t>(rank - 1);
-        std::ranges::nth_element(distance_m, nth);
-        reach_m[i] = *nth;
-    }
-    return reach_m;
-}
-
 double longest_edge_m(const RldParameters& p) {
     return p.d_e + p.d_t * std::sqrt(std::sqrt(p.s_crit + kTieTolerance));
 }
@@ -497,6 +474,27 @@ LimitedProblem limited_problem(const Scene& scene, const RldParameters& paramete
 }
 
 }  // namespace
+
+std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m) {
+    const std::size_t n = scene.cones.size();
+    std::vector<double> reach_m(n, std::numeric_limits<double>::infinity());
+    if (!(k > 0.0)) return reach_m;
+    const auto rank = static_cast<std::size_t>(std::ceil(k));
+    const double longest_m = max_m + kMargin_m;
+    std::vector<double> distance_m;
+    for (std::size_t i = 0; i < n; ++i) {
+        distance_m.clear();
+        for (std::size_t j = 0; j < n; ++j) {
+            const double squared = (scene.cones[j].position - scene.cones[i].position).squaredNorm();
+            if (j != i && squared <= longest_m * longest_m) distance_m.push_back(std::sqrt(squared));
+        }
+        if (distance_m.size() < rank) continue;
+        const auto nth = distance_m.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+        std::ranges::nth_element(distance_m, nth);
+        reach_m[i] = *nth;
+    }
+    return reach_m;
+}
 
 LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent) {
     validate(scene);

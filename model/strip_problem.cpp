@@ -130,13 +130,18 @@ class Builder {
         const Point heading = scene_.pose.heading();
         const double longest = square(p.w_max_m + kTieTolerance);
         const double shortest = square(std::max(0.0, p.w_min_m - kTieTolerance));
+        const std::vector<double> reach_m = reach_of_nearest(scene_, p.nearest_of_rung, p.w_max_m);
+        const auto is_usual = [&](double squared, std::size_t l, std::size_t r) {
+            const double most_m = std::max({p.w_usual_m, reach_m[l], reach_m[r]}) + kTieTolerance;
+            return squared <= square(most_m);
+        };
         rung_.assign(n * n, -1);
         across_.resize(n);
         for (std::size_t l = 0; l < n && !stop(); ++l) {
             for (std::size_t r = 0; r < n; ++r) {
                 const Point way = features_.at(l) - features_.at(r);
                 const double squared = way.squaredNorm();
-                if (squared > longest || squared < shortest || l == r) continue;
+                if (squared > longest || squared < shortest || l == r || !is_usual(squared, l, r)) continue;
                 rung_[l * n + r] = static_cast<std::int32_t>(problem_.rungs.size());
                 across_[l].push_back(r);
                 const bool may_start =
@@ -277,6 +282,9 @@ void validate(const StripParameters& p) {
     };
     require(p.w_min_m >= 0.0 && p.w_min_m < 100.0, "w_min_m", "must be at least 0 and below 100");
     require(p.w_max_m > p.w_min_m && p.w_max_m <= 100.0, "w_max_m", "must be above w_min_m, at most 100");
+    require(p.w_usual_m >= 0.0 && p.w_usual_m <= 100.0, "w_usual_m", "must be between 0 and 100");
+    require(p.nearest_of_rung >= 0.0 && p.nearest_of_rung <= 1e6, "nearest_of_rung",
+            "must be between 0 and 1e6");
     require(p.d_end_m >= 0.0 && p.d_end_m <= 1000.0, "d_end_m", "must be between 0 and 1000");
     if (p.costs) validate(*p.costs);
 }
@@ -285,18 +293,20 @@ StripParameters driving_strip_parameters() {
     StripParameters p;
     p.gates.d_e = 2.8;
     p.gates.d_t = 1.7;
-    p.gates.s_crit = 7.0;
+    p.gates.s_crit = 250.0;
     p.gates.theta_t = 0.9;
     p.gates.t_crit = 12.0;
     p.gates.d_min = 0.0;
-    p.gates.d_near = 9.0;
-    p.gates.d_side = 4.5;
-    p.gates.d_gap = 11.0;
+    p.gates.d_near = 11.0;
+    p.gates.d_side = 6.0;
+    p.gates.d_gap = 15.0;
     p.gates.theta_gap = 1.3;
     p.gates.d_clear = 0.3;
-    p.gates.nearest_of_edge = 8.0;
+    p.gates.nearest_of_edge = 12.0;
     p.gates.nearest_of_gap = 16.0;
-    p.w_max_m = 8.5;
+    p.w_max_m = 12.0;
+    p.w_usual_m = 8.5;
+    p.nearest_of_rung = 8.0;
     p.costs = std::make_shared<const StripCosts>(hand_set_strip_costs());
     return p;
 }

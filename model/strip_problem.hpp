@@ -14,7 +14,10 @@ struct StripParameters {
     RldParameters gates = {};
     double w_min_m = 2.0;  ///< least length of a rung [m]; at least 0
     double w_max_m = 6.5;  ///< largest length of a rung [m]; above w_min_m, at most 100
-    double d_end_m = 0.0;  ///< a lane ends at cones farther from the car than this [m]; 0: at any
+    /// A rung longer than this joins a cone with one of its `nearest_of_rung` nearest [m].
+    double w_usual_m = 6.5;
+    double nearest_of_rung = 0.0;  ///< for one end, fewer cones than this are nearer than the other; 0: off
+    double d_end_m = 0.0;          ///< a lane ends at cones farther from the car than this [m]; 0: at any
     std::shared_ptr<const StripCosts> costs = {};  ///< replace those of the gates
 };
 /// Throws InvalidInput naming the first parameter that is out of its range.

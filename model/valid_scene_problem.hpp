@@ -13,4 +13,8 @@ namespace conelane {
 [[nodiscard]] LimitedProblem make_edges_of_valid_scene(const Scene& scene, const RldParameters& parameters,
                                                        const Deadline& deadline);
 
+/// By cone: the distance of its k-th nearest other cone; infinite if there is none within max_m, or k is 0.
+/// A cone j is among the k nearest of i if fewer than k cones are nearer to i.
+[[nodiscard]] std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m);
+
 }  // namespace conelane

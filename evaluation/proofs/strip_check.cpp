@@ -63,7 +63,15 @@ class StripReference {
     [[nodiscard]] const LaneGraphReference<Real>& graph() const { return graph_; }
     [[nodiscard]] Real width(std::size_t a, std::size_t b) const { return size(at_[a] - at_[b]); }
     [[nodiscard]] bool is_rung(std::size_t l, std::size_t r) const {
-        return width(l, r) >= Real(p_.w_min_m) - kTie && width(l, r) <= Real(p_.w_max_m) + kTie;
+        return width(l, r) >= Real(p_.w_min_m) - kTie && width(l, r) <= Real(p_.w_max_m) + kTie &&
+               (width(l, r) <= Real(p_.w_usual_m) + kTie || has_few_nearer(l, r) || has_few_nearer(r, l));
+    }
+    /// Whether one of the cones that are nearest to `end` is across.
+    [[nodiscard]] bool has_few_nearer(std::size_t end, std::size_t across) const {
+        std::size_t nearer = 0;
+        for (std::size_t cone = 0; cone < at_.size(); ++cone)
+            nearer += cone != end && width(end, cone) < width(end, across) - kTie ? 1 : 0;
+        return p_.nearest_of_rung == 0.0 || static_cast<double>(nearer) < p_.nearest_of_rung;
     }
     [[nodiscard]] bool may_start(std::size_t l, std::size_t r) const {
         return is_rung(l, r) && graph_.is_near(l) && graph_.is_near(r) && left(l) > left(r);

@@ -21,8 +21,13 @@ inline std::shared_ptr<const StripCosts> random_strip_costs(std::uint64_t seed, 
     return std::make_shared<const StripCosts>(costs);
 }
 
+/// Limits below those of a car, so that backends are quick.
 inline StripParameters random_strip_parameters(std::uint64_t seed, std::size_t units = 0) {
     StripParameters parameters = driving_strip_parameters();
+    parameters.gates.s_crit = 7.0;
+    parameters.gates.d_gap = 11.0;
+    parameters.gates.nearest_of_edge = 8.0;
+    parameters.w_max_m = 8.5;
     parameters.costs = random_strip_costs(seed, units);
     return parameters;
 }

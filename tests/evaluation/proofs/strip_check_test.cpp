@@ -66,5 +66,47 @@ TEST(StripCheck, ObjectsToWrongLanesAndClaims) {
     EXPECT_GT(objections({}, right), 0U);
 }
 
+/// A long rung has to join a cone with one of its nearest; the problem and the check count them each by
+/// itself.
+TEST(StripCheck, LongRungsJoinCloseCones) {
+    StripSolver solver;
+    int objections = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = strewn_scene(16, 16.0, 12.0, seed);
+        StripParameters parameters = random_strip_parameters(seed);
+        const StripProblem all = make_strip_problem(scene, parameters);
+        parameters.w_usual_m = 4.0;
+        parameters.nearest_of_rung = 3.0;
+        const StripProblem some = make_strip_problem(scene, parameters);
+        const auto distance_m = [&](std::size_t a, std::size_t b) {
+            return (scene.cones[a].position - scene.cones[b].position).norm();
+        };
+        const auto is_close = [&](std::size_t end, std::size_t across) {
+            int nearer = 0;
+            for (std::size_t cone = 0; cone < scene.cones.size(); ++cone)
+                nearer += cone != end && distance_m(end, cone) < distance_m(end, across) ? 1 : 0;
+            return nearer < 3;
+        };
+        std::vector<std::pair<std::size_t, std::size_t>> expected;
+        for (const StripRung& rung : all.rungs) {
+            if (distance_m(rung.left, rung.right) <= 4.0 || is_close(rung.left, rung.right) ||
+                is_close(rung.right, rung.left))
+                expected.emplace_back(rung.left, rung.right);
+        }
+        ASSERT_LT(expected.size(), all.rungs.size());
+        ASSERT_EQ(some.rungs.size(), expected.size());
+        for (std::size_t k = 0; k < expected.size(); ++k)
+            EXPECT_EQ(std::pair(some.rungs[k].left, some.rungs[k].right), expected[k]);
+        const StripReport report = solver.solve(all, {});
+        if (report.lanes.empty()) continue;
+        const bool is_strip = cheapest_strip(some, report.lanes.front()).has_value();
+        EXPECT_EQ(check_strip(scene, parameters, lane_of(report.lanes.front(), scene)).violations.empty(),
+                  is_strip);
+        objections += is_strip ? 0 : 1;
+    }
+    EXPECT_GT(objections, 3);
+}
+
 }  // namespace
 }  // namespace conelane::tests
