@@ -172,7 +172,7 @@ TEST(FrontBoundary, IsRarelyMadeOfNoise) {
     boost::random::uniform_real_distribution<double> ahead_m(0.0, 30.0);
     boost::random::uniform_real_distribution<double> left_m(-30.0, 30.0);
     const auto detector = make_detector("front");
-    constexpr int kScenes = 300;
+    constexpr int kScenes = 1000;
     for (const int cones : {8, 16, 24}) {
         int without_lane = 0;
         int boundaries = 0;
@@ -189,7 +189,7 @@ TEST(FrontBoundary, IsRarelyMadeOfNoise) {
             if (answer.status == LaneStatus::found) ++boundaries;
         }
         EXPECT_GT(without_lane, 100) << cones;
-        EXPECT_LE(boundaries, kScenes / 40) << cones;
+        EXPECT_LE(boundaries, kScenes / 25) << cones;
     }
 }
 
