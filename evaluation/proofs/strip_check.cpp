@@ -66,7 +66,7 @@ class StripReference {
         return width(l, r) >= Real(p_.w_min_m) - kTie && width(l, r) <= Real(p_.w_max_m) + kTie &&
                (width(l, r) <= Real(p_.w_usual_m) + kTie || has_few_nearer(l, r) || has_few_nearer(r, l));
     }
-    /// Whether one of the cones that are nearest to `end` is across.
+    /// Whether `across` is among the nearest cones of `end`.
     [[nodiscard]] bool has_few_nearer(std::size_t end, std::size_t across) const {
         std::size_t nearer = 0;
         for (std::size_t cone = 0; cone < at_.size(); ++cone)

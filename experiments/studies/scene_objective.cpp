@@ -2,6 +2,7 @@
 
 #include "conelane/check.hpp"
 #include "conelane/solve_scene.hpp"
+#include "evaluation/proofs/strip_check.hpp"
 #include "experiments/studies/beams.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/strip/strip_solver.hpp"
@@ -10,6 +11,11 @@
 
 namespace conelane::experiments {
 namespace {
+
+void require_accepted(const Scene& cones, const CheckReport& report, const char* what) {
+    if (report.violations.empty()) return;
+    throw InvalidInput(cones.id, fmt::format("the checker rejects the {}: {}", what, report.violations[0]));
+}
 
 class RldObjective : public SceneObjective {
   public:
@@ -24,8 +30,8 @@ class RldObjective : public SceneObjective {
         if (report.status == SolveStatus::error) throw InvalidInput(cones_.id, report.message);
         ProvenLane best{report.status, report.bound, {}};
         if (!report.lane_graph) return best;
-        require_accepted(*report.lane_graph,
-                         {report.status == SolveStatus::optimal, *report.objective, report.bound}, "optimum");
+        const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
+        require_accepted(cones_, conelane::check(cones_, parameters_, *report.lane_graph, claim), "optimum");
         if (const auto lane = to_lane(*report.lane_graph, cones_))
             best.lane = PricedLane{*lane, *report.objective};
         return best;
@@ -44,23 +50,17 @@ class RldObjective : public SceneObjective {
     }
 
     void check(const PricedLane& lane, const char* what) const override {
-        require_accepted(*lane_graph_of(lane.lane, cones_), {false, lane.cost, {}}, what);
+        const LaneGraph graph = *lane_graph_of(lane.lane, cones_);
+        require_accepted(cones_, conelane::check(cones_, parameters_, graph, Claim{false, lane.cost, {}}),
+                         what);
     }
 
   private:
-    void require_accepted(const LaneGraph& graph, const Claim& claim, const char* what) const {
-        const CheckReport report = conelane::check(cones_, parameters_, graph, claim);
-        if (report.violations.empty()) return;
-        throw InvalidInput(cones_.id,
-                           fmt::format("the checker rejects the {}: {}", what, report.violations[0]));
-    }
-
     const Scene& cones_;
     const RldParameters& parameters_;
     LaneGraphProblem problem_;
 };
 
-/// Its solver checks its answers itself, and each cost is that of the cheapest strip, made anew.
 class StripObjective : public SceneObjective {
   public:
     StripObjective(const Scene& cones, const StripParameters& parameters)
@@ -70,7 +70,10 @@ class StripObjective : public SceneObjective {
         const StripReport report = StripSolver().solve(problem_, {.limits = {time_limit_ms}});
         if (report.status == SolveStatus::error) throw InvalidInput(cones_.id, report.message);
         ProvenLane best{report.status, report.bound, {}};
-        if (!report.lanes.empty()) best.lane = PricedLane{lane_of(report.lanes.front()), *report.objective};
+        if (report.lanes.empty()) return best;
+        best.lane = PricedLane{lane_of(report.lanes.front()), *report.objective};
+        const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
+        require_accepted(cones_, check_strip(cones_, problem_.parameters, best.lane->lane, claim), "optimum");
         return best;
     }
 
@@ -91,9 +94,8 @@ class StripObjective : public SceneObjective {
     }
 
     void check(const PricedLane& lane, const char* what) const override {
-        const std::optional<double> again = cost(lane.lane);
-        if (!again || std::abs(*again - lane.cost) > 1e-6)
-            throw InvalidInput(cones_.id, fmt::format("the cost of the {} is wrong", what));
+        const Claim claim{false, lane.cost, {}};
+        require_accepted(cones_, check_strip(cones_, problem_.parameters, lane.lane, claim), what);
     }
 
   private:

