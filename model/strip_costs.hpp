@@ -13,7 +13,7 @@ inline constexpr std::array kStripParts{StripPart::edge, StripPart::triangle, St
 }
 /// As files spell it: `edge`, `triangle`, `start`, `turn`, `end`.
 [[nodiscard]] std::string_view to_string(StripPart part);
-/// All features of a part, in the order of their weights; formulation.md has the definition of each.
+/// All features of a part, in the order of their weights; strip_features.cpp defines each.
 [[nodiscard]] std::span<const LearnedFeature> learned_features(StripPart part);
 
 /// Learned costs of the strip program: each column costs what its network says, without a limit.

@@ -5,7 +5,7 @@
 namespace conelane {
 namespace {
 
-// Scales and limits of the features, defined in formulation.md.
+// Scales and limits of the features.
 constexpr double kWidth_m = 3.7;
 constexpr double kCrowd_m = 3.5;
 constexpr double kRamp_m = 0.4;

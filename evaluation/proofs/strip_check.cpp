@@ -46,7 +46,7 @@ Real beyond(Real length) {
     return std::max<Real>(0, length - 5) / 3;
 }
 
-/// The costs of formulation.md, cone by cone.
+/// The limits of formulation.md and the learned costs, cone by cone.
 class StripReference {
   public:
     StripReference(const Scene& scene, const StripParameters& p) : p_(p), graph_(scene, p.gates) {

@@ -399,7 +399,7 @@ void validate(const SceneOptions& options) {
     if (!(miss_rate >= 0.0 && miss_rate < 1.0)) {
         throw InvalidInput("miss", "must be in [0, 1)");
     }
-    for (const auto& [rate, key] : {std::pair{options.color_error_rate, "color-error"},
+    for (const auto& [rate, key] : {std::pair{options.color_error_rate, "color-wrong"},
                                     {options.color_unknown_rate, "color-unknown"}}) {
         require_between(rate, 0.0, 1.0, key);
         if (rate > 0.0 && !options.with_color) throw InvalidInput(key, "needs scenes with colour");

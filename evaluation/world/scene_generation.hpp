@@ -23,7 +23,7 @@ struct Condition {
     [[nodiscard]] double noise_m(double distance_m) const;
 };
 
-/// The named conditions, so that tables can be compared: `paper`, without disturbances, `car` and `harsh`.
+/// The named conditions, so that tables can be compared: `paper`, without disturbances, `car`, `harsh`, `slam`.
 [[nodiscard]] std::span<const Condition> named_conditions();
 
 /// How names of conditions and ids of scenes spell the disturbances: "noise_0.1", "pose_noise_0.3_0.09",
@@ -69,7 +69,7 @@ struct SceneOptions {
 void validate(const SceneOptions& options);
 
 /// The conditions that the options ask for, at least one. Where an option changes a named one, its name says
-/// so: "car+miss_0", "car+fresh". Throws InvalidInput if a condition is unknown or named twice.
+/// so: "car+miss_0", "car+no_persist". Throws InvalidInput if a condition is unknown or named twice.
 [[nodiscard]] std::vector<Condition> conditions_of(const SceneOptions& options);
 /// Their names, for records of a run; empty if none is named.
 [[nodiscard]] std::vector<std::string> condition_names(const SceneOptions& options);

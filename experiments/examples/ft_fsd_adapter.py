@@ -18,7 +18,8 @@ from fsd_path_planning import ConeTypes, MissionTypes, PathPlanner
 from fsd_path_planning.sorting_cones.core_cone_sorting import ConeSortingInput
 
 warnings.simplefilter("ignore", DeprecationWarning)  # versions differ in how the sorting is called
-TYPES = {"blue": ConeTypes.LEFT, "yellow": ConeTypes.RIGHT, "orange": ConeTypes.START_FINISH_AREA, "unknown": ConeTypes.UNKNOWN}
+TYPES = {"blue": ConeTypes.LEFT, "yellow": ConeTypes.RIGHT, "orange": ConeTypes.START_FINISH_AREA,
+         "big_orange": ConeTypes.START_FINISH_LINE, "unknown": ConeTypes.UNKNOWN}
 WARM_UP = {"id": "0", "pose": {"x": -1, "y": 0, "yaw": 0},
            "cones": [{"x": 4 * i, "y": y} for i in range(8) for y in (-1.75, 1.75)]}
 

@@ -23,7 +23,6 @@ constexpr const char* kShape = "rld-shape.json";
 constexpr const char* kLearnedRld = "rld-learned.json";
 constexpr const char* kLearnedRldCheckpoint = "rld-learned.checkpoint.json";
 constexpr const char* kColoredRldCheckpoint = "rld-learned.colors.checkpoint.json";
-constexpr const char* kStrip = "rld-strip.json";
 constexpr const char* kStripCheckpoint = "rld-strip.checkpoint.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 constexpr const char* kFrontColorsCheckpoint = "front.colors.checkpoint.json";
@@ -214,7 +213,7 @@ Learned load_rld(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
 // The costs of the strip program, with the options of the shipped ones. They ignore colours.
 
 void learn_strip(const LearningOptions& options, const fs::path& folder) {
-    const fs::path file = folder / kStrip;
+    const fs::path file = folder / kStripFoldFile;
     if (fs::exists(file)) return;
     StripTrainingOptions training;
     training.steps =
@@ -228,7 +227,7 @@ void learn_strip(const LearningOptions& options, const fs::path& folder) {
 
 Learned load_strip(const DetectorRecipe& /*recipe*/, const fs::path& folder) {
     StripParameters parameters = driving_strip_parameters();
-    parameters.costs = read_strip_costs(folder / kStrip);
+    parameters.costs = read_strip_costs(folder / kStripFoldFile);
     return DetectorFactory([parameters] { return make_strip_detector(parameters); });
 }
 

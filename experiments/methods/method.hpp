@@ -19,14 +19,15 @@ struct LearningOptions {
     SceneOptions scenes;              ///< with the seed of all draws, and the number of threads
     std::size_t variants = 1;         ///< of each track, for networks
     std::size_t evaluations = 60;     ///< number of parameter sets that tuning tries, on every fourth pose
-    double front_steps = 1.0;  ///< length of the training of `front`, as a share of the shipped training
-    double rld_steps = 1.0;    ///< the same of `rld-learned` and `rld-strip`
+    double front_steps = 1.0;         ///< length of the training of `front`, as a share of the default one
+    double rld_steps = 1.0;           ///< the same of `rld-learned` and `rld-strip`, of the shipped training
     /// Folder of the files that the detectors have learned without colors. Empty: they learn these first.
     std::filesystem::path without_colors;
 };
 
-/// The file of the weights of front in the folder of a fold.
+/// The files of the weights of front and of rld-strip in the folder of a fold.
 inline constexpr std::string_view kFrontFoldFile = "front.json";
+inline constexpr std::string_view kStripFoldFile = "rld-strip.json";
 
 using DetectorFactory = std::function<std::unique_ptr<LaneDetector>()>;
 
@@ -88,6 +89,10 @@ struct Method {
         return recipe != nullptr ? recipe->is_rld() : outside && outside->is_solver();
     }
     [[nodiscard]] bool takes_weights() const { return recipe != nullptr && recipe->takes_weights(); }
+    /// The name of its weights in the folder of a fold. It must take weights.
+    [[nodiscard]] std::string_view weights_file_of_fold() const {
+        return std::holds_alternative<StripRecipe>(recipe->how) ? kStripFoldFile : kFrontFoldFile;
+    }
     /// The RLD parameters under these options; a solver from outside has the defaults.
     [[nodiscard]] RldParameters rld_parameters(const DetectorOptions& options) const;
 

@@ -338,9 +338,10 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     command.add_option("--every", options.every_m, "travel between poses [m]")->capture_default_str();
     command
         .add_option("--condition", options.conditions,
-                    "paper, car and harsh, separated by commas: a lap in each. paper: nothing disturbed; "
-                    "car: --noise 0.1, --pose-noise 0.3 m and 5 degrees, --miss 0.05, --persist; harsh: 0.2, "
-                    "0.5 m and 8 degrees, 0.1, --persist. If one of these options is given too, it replaces "
+                    "paper, car, harsh and slam, separated by commas: a lap in each. paper: nothing "
+                    "disturbed; car: --noise 0.1, --pose-noise 0.3 m and 5 degrees, --miss 0.05, --persist; "
+                    "harsh: 0.2, 0.5 m and 8 degrees, 0.1, --persist; slam: car with a pose noise of 0.1 m "
+                    "and 1 degree. If one of these options is given too, it replaces "
                     "its part in every condition, and the names say so, such as car+no_persist")
         ->delimiter(',')
         ->capture_default_str();

@@ -160,14 +160,14 @@ Driver truth_driver(const RaceCourse& course, int laps, double ahead_m) {
 }
 
 Driver make_driver(const Racer& racer, const RaceCourse& course, const RaceOptions& options,
-                   const std::optional<WeightsBytes>& weights) {
+                   const WeightsBytes* weights) {
     if (!racer.method) {
         if (racer.name == "truth") return truth_driver(course, options.laps, options.by_safe ? 60.0 : 20.0);
         return [](const Frame& /*frame*/) { return Drive{}; };
     }
     if (racer.method->programs) return outside_driver(racer.method->programs);
     DetectorOptions detector_options;
-    if (racer.takes_weights() && weights) detector_options.weights = *weights;
+    if (weights != nullptr) detector_options.weights = *weights;
     if (racer.has_planner) return planner_driver(racer.method->name, detector_options, course, options);
     return detector_driver(*racer.method->recipe, detector_options);
 }

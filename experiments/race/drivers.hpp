@@ -24,9 +24,9 @@ enum class WithPlanner { no, only, both };
 /// stops behind the last line. Its map frame is that of the world: no random map frame, drift or jumps.
 [[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps, double ahead_m = 20.0);
 
-/// A new driver for one race. `course` must outlive it. `weights`: instead of the shipped weights, if the
-/// method takes weights. Throws InvalidInput naming `weights` if they cannot be read.
+/// A new driver for one race. `course` must outlive it. `weights`: instead of the shipped weights, if not
+/// null. Throws InvalidInput naming `weights` if they cannot be read or the method takes none.
 [[nodiscard]] Driver make_driver(const Racer& racer, const RaceCourse& course, const RaceOptions& options,
-                                 const std::optional<WeightsBytes>& weights = {});
+                                 const WeightsBytes* weights = nullptr);
 
 }  // namespace conelane::experiments

@@ -42,7 +42,7 @@ export interface Answer extends Lane {
   /** Of methods that enumerate. */
   iterations?: number;
   complete?: boolean;
-  /** Cones within 0.12 m of another one, each with the id that represents both. */
+  /** Cones within 0.12 m of another one (front: up to 0.35 m if many are doubled), each with the id that represents both. */
   merged: [number, number][];
   /** From the scene in the module's memory to the lane. */
   latency_ms: number;
@@ -145,6 +145,10 @@ export interface Plan {
   lap: number;
   /** Come to rest within the rest of `lane`. */
   stop: boolean;
+  /** Distance along `lane` to the line behind which the car has to stop; absent while it is not on the lane. */
+  stop_line_m?: number;
+  /** Why the course of the lap before is not trusted to its end, or why the path is lost; else empty. */
+  reason: string;
   phase: string;
   answer: Omit<Answer, "method" | "merged" | "latency_ms">;
   latency_ms: number;

@@ -330,6 +330,8 @@ void conelane_plan(double time_s, const double* scene_numbers, std::size_t scene
     begin();
     out.member("state", to_string(plan.state)).member("safe_m", plan.safe_m).member("age_s", plan.age_s);
     out.member("lap", plan.lap).member("stop", plan.stop).member("phase", plan.phase);
+    out.member("reason", plan.reason);
+    if (plan.stop_line_m) out.member("stop_line_m", *plan.stop_line_m);
     out.member("latency_ms", latency_ms).key("lane").begin('{');
     write_centre_line(plan.lane);
     out.end('}').key("answer").begin('{');

@@ -1,4 +1,4 @@
-// The module's lanes against those that the native program stored (tests/playground/stored_scenes.json).
+// The module's lanes against those that the native program stored (stored_scenes.json).
 
 /** Calls of front for each scene. */
 const CALLS = 15;

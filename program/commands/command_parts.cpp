@@ -2,7 +2,6 @@
 
 #include "evaluation/formats/file_text.hpp"
 #include "experiments/report/report.hpp"
-#include "graph_search/front/front_weights.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -34,9 +33,13 @@ void write_page(const fs::path& directory) {
 
 }  // namespace
 
-WeightsBytes read_front_weights_bytes(const fs::path& file) {
-    return parsed_file(file, [](std::string text) {
-        (void)parse_front_weights(text);
+WeightsBytes read_weights_bytes(const fs::path& file, const std::string& method,
+                                const DetectorRecipe* recipe) {
+    if (recipe == nullptr || !recipe->takes_weights())
+        throw InvalidInput("--weights",
+                           method + " does not take them: only front, front-warm and rld-strip do");
+    return parsed_file(file, [&](std::string text) {
+        (void)make_detector(*recipe, {.weights = WeightsBytes{text}});
         return WeightsBytes{std::move(text)};
     });
 }

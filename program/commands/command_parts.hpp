@@ -10,9 +10,10 @@ namespace conelane::program {
 /// Stands for standard input and standard output.
 inline constexpr const char* kStandardStream = "-";
 
-/// The weights that `conelane train front` wrote. They are checked at once: before the work. Throws
-/// InputError.
-[[nodiscard]] WeightsBytes read_front_weights_bytes(const std::filesystem::path& file);
+/// The weights that `conelane train` wrote for a method. They are checked at once: before the work. Throws
+/// InputError, and InvalidInput naming --weights if the method, null for one from outside, takes none.
+[[nodiscard]] WeightsBytes read_weights_bytes(const std::filesystem::path& file, const std::string& method,
+                                              const DetectorRecipe* recipe);
 
 /// The scene of that id in a file. Throws InputError naming --id if there is none.
 [[nodiscard]] AnnotatedScene scene_named(const std::string& id, const std::filesystem::path& scenes_file);

@@ -24,7 +24,7 @@ OptionFields learning_fields(LearningOptions& learning) {
             {"--evaluations", "", &learning.evaluations, OptionRange{1.0, 100'000.0},
              "number of evaluations for each set of tuned parameters"},
             {"--front-steps", "", &learning.front_steps, kPositive,
-             "of the training of front, as a share of those of the shipped weights"},
+             "of the training of front, as a share of the defaults of `conelane train front`"},
             {"--rld-steps", "", &learning.rld_steps, kPositive,
              "of the trainings of rld-learned and rld-strip, as a share of those of the shipped costs"}};
 }

@@ -27,12 +27,7 @@ Method method_of(DetectOptions& options) {
     const std::string who = (method.outside ? "the program '" : "'") + method.name + "'";
     if (!method.is_rld()) options.parameters.require_not_given(who + " has");
     if (options.weights.empty()) return method;
-    if (!method.takes_weights())
-        throw InvalidInput("--weights", who + " does not take them: only front, front-warm and rld-strip do");
-    options.run.detector.weights = parsed_file(options.weights, [&](const std::string& text) {
-        (void)make_detector(*method.recipe, {.weights = WeightsBytes{text}});
-        return WeightsBytes{text};
-    });
+    options.run.detector.weights = read_weights_bytes(options.weights, who, method.recipe);
     return method;
 }
 

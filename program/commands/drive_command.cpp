@@ -56,8 +56,11 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
         wanted.detector = detector_of(options);
         wanted.laps = options.laps;
         wanted.drivable = options.drivable;
-        if (!options.weights.empty())
-            wanted.detector_options.weights = read_front_weights_bytes(options.weights);
+        const DetectorRecipe* const recipe = find_recipe(wanted.detector);
+        if (!options.weights.empty() && recipe != nullptr) {
+            wanted.detector_options.weights =
+                read_weights_bytes(options.weights, "'" + wanted.detector + "'", recipe);
+        }
         return make_planner(wanted);
     } catch (const InvalidInput& error) {
         throw InvalidInput(option_of(error.key()), reason_of(error));
@@ -255,8 +258,7 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
     command.add_option("--laps", options.laps, "laps of trackdrive (10) and autocross (1)")
         ->needs(follow)
         ->check(CLI::Range(1, 1'000'000));
-    command.add_option("--weights", options.weights, "weights of front or front-warm, see detect")
-        ->needs(follow);
+    command.add_option("--weights", options.weights, "weights of the method, see detect")->needs(follow);
     add_number_option(command, "--interval", options.interval_s, 0.001, 10.0,
                       "time between frames that have no time [s]")
         ->needs(follow);

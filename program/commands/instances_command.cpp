@@ -52,8 +52,8 @@ void add_instances_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "instances",
         "a library of binary programs for other solvers: MPS files of the printed and the tight formulation, "
-        "the list conelane.test, conelane.solu with the optima that path-pair and CBC both proved, the cone "
-        "sets, and index.csv with classes and features");
+        "the list conelane.test, conelane.solu with the optima that path-pair and CBC both proved and what "
+        "is known of the others, the cone sets, and index.csv with classes and features");
     auto options = std::make_shared<InstancesOptions>();
     InstanceOptions& instances = options->instances;
     instances.tracks = {"generated:straight", "generated:circle", "generated:curvy"};

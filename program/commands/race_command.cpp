@@ -7,6 +7,7 @@
 #include "program/commands/command_parts.hpp"
 
 #include <exception>
+#include <map>
 #include <thread>
 
 namespace conelane::program {
@@ -47,10 +48,10 @@ bool has_known_course(std::optional<Mission> mission) {
     return mission == Mission::acceleration || mission == Mission::skidpad;
 }
 
-/// A course, and the weights with which methods drive it; absent: the shipped ones.
-struct WeightedCourse {
+/// A course, and the folder of the fold that held it out; empty: none.
+struct FoldedCourse {
     RaceCourse course;
-    std::shared_ptr<const WeightsBytes> weights = {};
+    std::filesystem::path fold = {};
 };
 
 /// Measures what the same car needs for a first lap and a later one, if it knows its pose and the course.
@@ -65,27 +66,21 @@ void add_known_laps(const RaceCourse& course, const RaceOptions& as_raced, RaceR
     for (const std::size_t later : {0U, 1U}) result.by_lap[later].known_lap_s = known.by_lap[later].time_s;
 }
 
-std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
-    return std::make_shared<const WeightsBytes>(read_front_weights_bytes(file));
-}
-
-void add_circuits(std::vector<WeightedCourse>& courses, const std::string& spec,
-                  std::optional<Mission> mission, const std::shared_ptr<const WeightsBytes>& weights) {
+void add_circuits(std::vector<FoldedCourse>& courses, const std::string& spec, std::optional<Mission> mission,
+                  const std::filesystem::path& fold) {
     for (const Track& track : load_tracks_aloud(spec)) {
         if (!track.closed || !track.driven.empty()) {
             fmt::print(stderr, "conelane: {} is left out: not a closed course with boundaries\n", track.name);
             continue;
         }
-        courses.push_back({circuit(track), weights});
+        courses.push_back({circuit(track), fold});
         if (mission) courses.back().course.mission = *mission;
     }
 }
 
 /// With --vary, one course for each seed, in the order of the seeds.
-std::vector<WeightedCourse> courses_of(const Options& options, std::optional<Mission> mission) {
-    std::vector<WeightedCourse> courses;
-    std::shared_ptr<const WeightsBytes> weights;
-    if (!options.weights.empty()) weights = read_weights(options.weights);
+std::vector<FoldedCourse> courses_of(const Options& options, std::optional<Mission> mission) {
+    std::vector<FoldedCourse> courses;
     if (has_known_course(mission)) {
         if (!options.families.empty()) throw InvalidInput("--family", "is for circuits");
         if (options.vary) {
@@ -93,34 +88,56 @@ std::vector<WeightedCourse> courses_of(const Options& options, std::optional<Mis
                 throw InvalidInput("--vary", "is for the courses that missions have of their own");
             }
             for (const std::uint64_t seed : options.seeds) {
-                courses.push_back({varied_mission_course(*mission, seed), weights});
+                courses.push_back({varied_mission_course(*mission, seed)});
             }
             return courses;
         }
-        if (options.tracks.empty()) courses.push_back({mission_course(*mission), weights});
+        if (options.tracks.empty()) courses.push_back({mission_course(*mission)});
         for (const std::string& spec : options.tracks) {
             for (const Track& track : load_tracks_aloud(spec)) {
-                courses.push_back({mission_course(*mission, track), weights});
+                courses.push_back({mission_course(*mission, track)});
             }
         }
         return courses;
     }
     if (options.vary) throw InvalidInput("--vary", "is for the missions acceleration and skidpad");
-    for (const std::string& spec : options.tracks) add_circuits(courses, spec, mission, weights);
+    for (const std::string& spec : options.tracks) add_circuits(courses, spec, mission, {});
     for (const CourseFamily& family : parse_families(options.families)) {
-        if (!options.folds.empty()) {
-            weights = read_weights(std::filesystem::path(options.folds) / family.name / kFrontFoldFile);
-        }
-        for (const std::string& spec : family.tracks) add_circuits(courses, spec, mission, weights);
+        std::filesystem::path fold;
+        if (!options.folds.empty()) fold = std::filesystem::path(options.folds) / family.name;
+        for (const std::string& spec : family.tracks) add_circuits(courses, spec, mission, fold);
     }
     if (courses.empty()) throw InvalidInput("--tracks", "hold no closed course with boundaries");
     return courses;
 }
 
+/// The weights of methods, each file read once.
+class RacersWeights {
+  public:
+    explicit RacersWeights(std::filesystem::path file_for_all) : file_for_all_(std::move(file_for_all)) {}
+
+    /// Null: the shipped weights, or none.
+    const WeightsBytes* of(const Racer& racer, const std::filesystem::path& fold) {
+        if (!racer.takes_weights() || (file_for_all_.empty() && fold.empty())) return nullptr;
+        const std::filesystem::path file =
+            fold.empty() ? file_for_all_ : fold / racer.method->weights_file_of_fold();
+        const auto [known, is_new] = weights_.try_emplace({file, racer.method->name});
+        if (is_new) {
+            known->second = read_weights_bytes(file, "'" + racer.method->name + "'", racer.method->recipe);
+        }
+        return &known->second;
+    }
+
+  private:
+    std::filesystem::path file_for_all_;
+    std::map<std::pair<std::filesystem::path, std::string>, WeightsBytes> weights_;
+};
+
 /// A race and its input.
 struct Entry {
-    const WeightedCourse* course;
+    const RaceCourse* course;
     const Racer* racer;
+    const WeightsBytes* weights;  ///< null: the shipped ones
 };
 
 void run_all(const Options& options, const std::vector<Entry>& entries, std::vector<Heat>& heats) {
@@ -136,11 +153,10 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 race_options.sight.false_positive_rate = heat.false_positive_rate;
                 race_options.sight.seed = heat.seed;
                 race_options.keep_replay = options.replay != "none";
-                const auto& [course, weights] = *entries[i].course;
+                const auto& [raced, racer, weights] = entries[i];
+                const RaceCourse& course = *raced;
                 race_options.with_any_map = !course.closed && heat.detector != "truth";
-                heat.result = race(course, race_options,
-                                   make_driver(*entries[i].racer, course, race_options,
-                                               weights ? std::optional(*weights) : std::nullopt));
+                heat.result = race(course, race_options, make_driver(*racer, course, race_options, weights));
                 if (race_options.by_safe) add_known_laps(course, race_options, heat.result);
                 // Keeps only the races that failed, and the first one, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
@@ -213,7 +229,7 @@ class Outputs {
         for (std::size_t i = 0; i < heats.size(); ++i) {
             json["races"].push_back(heat_json(heats[i]));
             if (heats[i].result.replay.empty()) continue;
-            replay_.stream() << replay_json(heats[i], entries[i].course->course).dump() << "\n";
+            replay_.stream() << replay_json(heats[i], *entries[i].course).dump() << "\n";
         }
         std::string table = race_table(heats, options.race.laps);
         if (options.race.by_safe) table += "\n" + speed_table(heats);
@@ -274,9 +290,10 @@ void run_races(Options& options) {
     const bool any_weights = !options.weights.empty() || !options.folds.empty();
     if (any_weights && std::ranges::none_of(all, &Racer::takes_weights)) {
         throw InvalidInput(options.weights.empty() ? "--folds" : "--weights",
-                           "none of the methods takes weights: only front and front-warm do");
+                           "none of the methods takes weights: only front, front-warm and rld-strip do");
     }
-    const std::vector<WeightedCourse> courses = courses_of(options, mission);
+    const std::vector<FoldedCourse> courses = courses_of(options, mission);
+    RacersWeights weights(options.weights);
     std::vector<Heat> heats;
     std::vector<Entry> entries;
     const std::size_t distinct_courses = options.vary ? 1 : courses.size();
@@ -284,9 +301,9 @@ void run_races(Options& options) {
         for (const Racer& racer : all) {
             for (const double rate : options.rates) {
                 for (std::size_t i = 0; i < options.seeds.size(); ++i) {
-                    const WeightedCourse& course = courses[options.vary ? i : first];
-                    heats.push_back({course.course.name, racer.name, rate, options.seeds[i]});
-                    entries.push_back({&course, &racer});
+                    const auto& [course, fold] = courses[options.vary ? i : first];
+                    heats.push_back({course.name, racer.name, rate, options.seeds[i]});
+                    entries.push_back({&course, &racer, weights.of(racer, fold)});
                 }
             }
         }
@@ -310,12 +327,12 @@ void add_race_command(CLI::App& program) {
     command
         .add_option(
             "--folds", options->folds,
-            "FOLDER/NAME/front.json, as `cross-validate` leaves them in OUT/folds, are the weights for "
-            "the courses of --family NAME")
+            "the weights for the courses of --family NAME are in FOLDER/NAME, as `cross-validate` leaves "
+            "them in OUT/folds: front.json, rld-strip.json")
         ->needs(families);
     command
         .add_option("--weights", options->weights,
-                    "weights of front and front-warm: a file that `conelane train front` wrote")
+                    "weights of the methods that take them: a file that `conelane train` wrote")
         ->excludes("--folds");
     command.add_option(
         "--methods", options->detectors,

@@ -64,7 +64,7 @@ struct FrontierTuning {
     std::size_t max_labels = 1'000'000;
     std::size_t max_label_words = 40'000'000;  ///< of 8 bytes, of the labels' sets of edges together
 
-    /// To make a frontier takes so many steps of the clock: half a microsecond, docs/path-pair.md.
+    /// To make a frontier takes so many steps of the clock: half a microsecond.
     std::size_t work_per_frontier = 500;
     int wide_frontiers = 4000;      ///< From here on a narrow search comes first, and tables have detours.
     std::size_t narrow_labels = 2;  ///< A narrow search expands so many labels at a frontier.

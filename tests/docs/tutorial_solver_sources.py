@@ -14,7 +14,7 @@ PATCHED = ("solvers/CMakeLists.txt", "solvers/core_entries.hpp", "solvers/core_s
 
 
 def patch(text, *options):
-    return subprocess.run(["patch", "-p1", "--force", *options], input=text, cwd=FOLDER, capture_output=True, text=True, check=False)
+    return subprocess.run(["patch", "-p1", "--force", "--fuzz=0", *options], input=text, cwd=FOLDER, capture_output=True, text=True, check=False)
 
 
 def main():

@@ -96,6 +96,9 @@ TEST_F(RaceCommand, UnusedOrInvalidWeightsAreRefused) {
     expect_refused(kidney + "--methods front --weights wrong.json", {"wrong.json"});
     expect_refused(kidney + "--methods front --folds .", {"--family"});
     expect_refused("race --family a=generated:kidney --folds . --methods front --out out", {"a/front.json"});
+    expect_refused(kidney + "--methods front,rld-strip --weights front.json", {"front.json"});
+    expect_refused("race --family a=generated:kidney --folds . --methods rld-strip --out out",
+                   {"a/rld-strip.json"});
     expect_refused("race --family generated:kidney --methods front --out out", {"--family", "NAME=SPEC"});
     expect_refused("race --mission skidpad --family a=generated:kidney --methods front --out out",
                    {"--family"});
