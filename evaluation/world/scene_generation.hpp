@@ -23,7 +23,7 @@ struct Condition {
     [[nodiscard]] double noise_m(double distance_m) const;
 };
 
-/// The named conditions, so that tables can be compared: `paper`, without disturbances, `car`, `harsh`, `slam`.
+/// Named conditions, so that tables can be compared: `paper`, undisturbed, `car`, `harsh` and `slam`.
 [[nodiscard]] std::span<const Condition> named_conditions();
 
 /// How names of conditions and ids of scenes spell the disturbances: "noise_0.1", "pose_noise_0.3_0.09",
