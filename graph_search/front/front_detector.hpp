@@ -39,8 +39,8 @@ struct FrontOptions {
 /// confidence. Enumeration counts the states that moved, and says `complete` where no lane that the rules
 /// allow was left out.
 ///
-/// Where no lane was found before time or memory was spent, or none that is usable with a probability of 0.03,
-/// a boundary is looked for that is seen alone (see BoundarySearch): three cones at least, five in place of a
+/// Where no lane was found before time or memory was spent, or none whose probability to be usable is 0.03, a
+/// boundary is looked for that is seen alone (see BoundarySearch): three cones at least, five in place of a
 /// lane, the other side of the answer empty, no confidence. The bonus of the last lane has no part in it, and
 /// it is not remembered as one.
 ///
