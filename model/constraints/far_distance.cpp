@@ -62,8 +62,8 @@ void far_distance(const FamilyContext& context) {
 // Exactly two endpoints are far, by (3) and (11). If a path ends at a far cone i with the edge {k, i}, then
 // the other path ends at a far cone j within d_max of i, with an edge {l, j} that is compatible with {k, i}:
 //   e_ki <= sum of e_lj over these edges.
-// With pairing near_far the two paths are disjoint, so their last edges share no cone. With pairing paper both
-// ends may be those of one path.
+// With pairing near_far the two paths are disjoint, so their last edges share no cone; with pairing paper the
+// two ends may be those of one path.
 // The relaxation is stronger than with m_i + m_j <= 1 for each pair more than d_max apart.
 void far_partners(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
