@@ -218,7 +218,7 @@ constexpr double kRunOver_m = 0.5;   ///< from the middle of the car
 
 /// The colors of the five lists of a map.
 constexpr std::array kListColors{ConeColor::unknown, ConeColor::yellow, ConeColor::blue, ConeColor::orange,
-                                 ConeColor::big_orange};
+                                 ConeColor::orange};
 
 Point read_point(const JsonNode& json) {
     if (json.array_size() != 2) json.fail("must be [x, y]");
