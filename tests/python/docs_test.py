@@ -87,7 +87,7 @@ class Pages(unittest.TestCase):
 
     def run_page(self, page):
         text = (SOURCES / page).read_text(encoding="utf-8")
-        text = re.sub(r"(planner\.update\(.*?)(?:, time_limit_ms=\d+)?\)$", r"\1, time_limit_ms=None)", text, flags=re.M)
+        text = re.sub(r"(planner\.update\(.*?)(?:, time_limit_ms=\d+)?\)( *#.*)?$", r"\1, time_limit_ms=None)\2", text, flags=re.M)
         blocks = [(match.start(), match.group(1)) for match in re.finditer(r"^```python\n(.*?)^```", text, re.M | re.S)]
         names = {"__name__": page}
         before = os.getcwd()
