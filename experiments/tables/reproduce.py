@@ -15,11 +15,14 @@ def at(event):
 
 
 def part_rows(events):
-    """Minutes of the call that ended a part, and how many calls it took: a call that was killed has no end, so its time is unknown."""
+    """Minutes of the call that ended a part, and how many calls it took: a call that was killed has no end, so its time is unknown. A part that
+    was not asked for has no row."""
     rows = []
     for part in WHAT:
         begins = [event for event in events if event["part"] == part and event["event"] == "begin"]
         ends = [event for event in events if event["part"] == part and event["event"] == "end"]
+        if not begins:
+            continue
         if len(ends) != 1:
             raise SystemExit(f"tables.py: parts.jsonl has {len(ends)} ends of {part}")
         rows.append({"part": part, "minutes": round((at(ends[0]) - at(begins[-1])).total_seconds() / 60, 1), "calls": len(begins)})

@@ -53,7 +53,7 @@ class Planted(unittest.TestCase):
     def test_commit_hash(self):
         self.assertEqual(found("docs/a.md", "as\nof 38b87a6.\n"), [(2, "commit hash 38b87a6")])
         self.assertEqual(found("a.cpp", "// by 1d9df23\n"), [(1, "commit hash 1d9df23")])
-        for name in ("docs/benchmarks/0.5.md", "CHANGELOG.md"):
+        for name in ("docs/benchmarks/0.6.md", "CHANGELOG.md"):
             self.assertEqual(found(name, "by 38b87a6\n"), [], name)
         for text in ("0x38b87a6f", "1500000", "defaced", "1234567e5", "e74213e5a976d08f", "%0500000d", "abc/38b87a6/x"):
             self.assertEqual(found("docs/a.md", text + "\n"), [], text)

@@ -137,6 +137,7 @@ class Reproduce(unittest.TestCase):
                          [("held_out", 10.0, 2), ("shipped", 1.0, 1), ("solvers", 2.0, 1), ("engines", 0.0, 1), ("pictures", 0.0, 1)])
         with self.assertRaises(SystemExit):
             reproduce.part_rows(events[:-1])
+        self.assertEqual([row["part"] for row in reproduce.part_rows(events[:3])], ["held_out"])
 
     def test_the_record_has_commit_and_dates(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -286,8 +287,8 @@ class OneCommit(unittest.TestCase):
     def program_of(self, commit):
         self.executable(os.path.join(self.runs, "conelane"), f"echo 'commit {commit}'")
 
-    def expect(self, code, words=""):
-        run = subprocess.run(["bash", os.path.join(self.project, "experiments", "reproduce"), self.runs, self.project], capture_output=True, text=True, check=False)
+    def expect(self, code, words="", *parts):
+        run = subprocess.run(["bash", os.path.join(self.project, "experiments", "reproduce"), self.runs, self.project, *parts], capture_output=True, text=True, check=False)
         self.assertEqual(run.returncode, code, run.stderr)
         self.assertIn(words, run.stderr)
 
@@ -303,6 +304,9 @@ class OneCommit(unittest.TestCase):
     def test_other_files_are_refused(self):
         self.executable(os.path.join(self.runs, "held_out.json"), "")
         self.expect(2, "holds other files")
+
+    def test_a_part_that_is_not_there_is_refused(self):
+        self.expect(2, "figures is none of the parts", "held_out", "figures")
 
     def test_changes_in_no_commit_are_refused(self):
         self.write("code.py", "other code")
