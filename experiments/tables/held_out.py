@@ -3,12 +3,12 @@
 import os
 from collections import defaultdict
 
-from cells import UNKNOWN, both, fixed, grouped, lines_of, mean, over, percent, provenance, read_json, rounded, table, version_of
-from races import MEASURES, measure_cells, race_rows
+from cells import UNKNOWN, both, columns_table, fixed, grouped, lines_of, mean, over, percent, provenance, read_json, rounded, share, table, version_of
+from races import MEASURES, lap_rows, measure_cells, race_rows
 
 COMPARISONS = ["front", "front_no_persist", "front_lap", "front_colors", "clc", "others", "others_colors", "peers", "peers_colors"]
 OPTIONAL = {"peers", "peers_colors"}  # of answers that DATA may have
-RACES = ["race", "race_harsh", "race_ten"]
+RACES = ["race", "race_harsh", "race_ten", "race_safe"]
 OWN_SCENES = {"front", "clc", "others", "peers"}  # runs on the scenes of the first table
 
 CONDITIONS = ["paper", "car"]
@@ -95,7 +95,7 @@ def twelve_rows(folder):
 
 
 def collect(folder):
-    stored = {"runs": {}, "rows": [], "parts": [], "races": []}
+    stored = {"runs": {}, "rows": [], "parts": [], "races": [], "laps": []}
     family_of = {}
     for name in COMPARISONS:
         path = os.path.join(folder, name)
@@ -116,6 +116,7 @@ def collect(folder):
         record = read_json(os.path.join(folder, name, "race.json"))
         stored["runs"][name] = provenance(record)
         stored["races"] += [{"run": name} | row for row in race_rows(record)]
+        stored["laps"] += [{"run": name} | row for row in lap_rows(record)]
     stored["twelve"] = twelve_rows(os.path.join(folder, "twelve"))
     stored["runs"]["twelve"] = version_of(os.path.join(folder, "twelve", "version.txt"))
     return stored
@@ -278,6 +279,16 @@ def ten_laps_table(figures):
                    ", ".join(f"`{race.split()[0]}`" for race in row["not_finished"]) or "none"] for row in races_of(figures, "race_ten", "front-warm+planner")])
 
 
+def lap_table(figures):
+    """Of the races by the trust, a row for the laps of each rate; with the share of the races that were finished."""
+    finished = {row["rate"]: row["finished"] for row in races_of(figures, "race_safe", "front-warm+planner")}
+    return columns_table("laps, false positives", "{laps}, {percent:.0f} %", {
+        "time ratio": lambda row: fixed(row["time_ratio"], 3), "safe < 3 m, %": share("short", 2), "trusted, wrong, %": share("wrong_trusted", 2),
+        "sideways p95, m": lambda row: fixed(row["sideways_p95_m"], 3), "curvature, 1/m": lambda row: fixed(row["curvature_1pm"], 2),
+        "races finished, %": lambda row: percent(finished[row["rate"]])},
+        [row | {"percent": 100.0 * row["rate"]} for row in figures.stored.get("laps", []) if row["run"] == "race_safe"])
+
+
 def twelve_table(figures):
     names = {"default": "(29)", "shape": "costs of the shape", "learned": "learned costs"}
     lines = []
@@ -318,6 +329,7 @@ TABLES = {
     "races": race_table,
     "races by measure": race_measure_table,
     "ten laps": ten_laps_table,
+    "lap times": lap_table,
     "twelve cones": twelve_table,
 }
 

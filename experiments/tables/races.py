@@ -1,6 +1,6 @@
 """Figures of the races in a race.json, and the cells of their tables."""
 
-from cells import fixed, grouped, median, percent, race_measures, rounded
+from cells import fixed, grouped, mean, median, percent, race_measures, rounded
 
 
 def race_rows(record):
@@ -12,6 +12,22 @@ def race_rows(record):
             key: rounded(found[key]) for key in ("races", "finished", "hit_a_lap", "lateral_error_p95_m", "unsteady", "wrong")} | {
                 "stop_said_m": [rounded(of(said)) for of in (min, median, max)] if said else None,
                 "not_finished": sorted(f"{heat['track']} {heat['seed']}" for heat in heats if not heat["finished"])})
+    return rows
+
+
+def lap_rows(record):
+    """A row for each method, share of false positives, and first or later laps, as the second table of `race --speed safe` has them."""
+    rows = []
+    for (method, rate), heats in sorted(grouped(record["races"], ("method", "false_positive_rate")).items()):
+        for laps in ("first", "later"):
+            driven = [heat["first_lap" if laps == "first" else "later_laps"] for heat in heats if ("first_lap" if laps == "first" else "later_laps") in heat]
+            frames = sum(lap["frames"] for lap in driven)
+            if frames:
+                rows.append({"method": method, "rate": rate, "laps": laps, "courses": len(heats)} | {key: rounded(value) for key, value in {
+                    "time_ratio": mean(lap["time_s"] / lap["laps"] / lap["known_course_lap_s"] for lap in driven if lap["laps"]),
+                    "short": sum(lap["short_frames"] for lap in driven) / frames, "wrong_trusted": sum(lap["wrong_trusted"] for lap in driven) / frames,
+                    "sideways_p95_m": mean(lap["sideways_p95_m"] for lap in driven if lap["sideways_p95_m"] is not None),
+                    "curvature_1pm": median([lap["max_curvature_1pm"] for lap in driven])}.items()})
     return rows
 
 

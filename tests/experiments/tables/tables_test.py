@@ -81,6 +81,16 @@ class Races(unittest.TestCase):
         self.assertEqual([(row["method"], row["races"], row["finished"], row["not_finished"]) for row in rows],
                          [("a", 2, 0.5, ["x 1"]), ("b", 1, 1.0, [])])
 
+    def test_first_and_later_laps_are_apart_and_a_lap_that_was_not_finished_has_no_time(self):
+        lap = {"laps": 1, "time_s": 33.0, "known_course_lap_s": 30.0, "frames": 100, "short_frames": 1, "right_untrusted": 0, "wrong_trusted": 2,
+               "sideways_p95_m": 0.02, "max_curvature_1pm": 0.2}
+        heats = [heat(first_lap=lap, later_laps=lap | {"laps": 2, "time_s": 60.0}), heat(finished=False, first_lap=lap | {"laps": 0, "frames": 300})]
+        laps = [{"run": "race_safe"} | row for row in races.lap_rows({"races": heats})]
+        stored = {"races": [{"run": "race_safe"} | row | {"method": "front-warm+planner"} for row in races.race_rows({"condition": "slam", "races": heats})],
+                  "laps": laps}
+        self.assertEqual(held_out.lap_table(held_out.Figures(stored)).splitlines()[2:],
+                         ["| first, 30 % | 1.100 | 0.50 | 1.00 | 0.020 | 0.20 | 50.0 |", "| later, 30 % | 1.000 | 1.00 | 2.00 | 0.020 | 0.20 | 50.0 |"])
+
     def test_measures_are_those_of_the_program(self):
         row = races.race_rows({"condition": "car", "races": [
             heat(finished_laps=10, cones_hit=5, wrong_unflagged=1, unsteady_share=0.2, stop_said_m=1.0),
