@@ -13,17 +13,17 @@ namespace conelane {
 
 /// The checker's result for a set of edges.
 struct CheckReport {
-    std::vector<std::string>
-        violations;  ///< a sentence each, naming constraint and cones; empty for a lane graph
-    std::optional<double> objective;  ///< (29), if every edge joins two cones of the scene
-    std::size_t along_heading = 0;    ///< edges that count in (9)
-    /// Whether there is a violation that more edges cannot repair: of (2), (5), (6), (27), (28), a crossing
-    /// or an invalid edge.
+    std::vector<std::string> violations;  ///< a sentence each; empty for a lane graph
+    /// (29) with the costs that parameters add; absent if an edge is a loop, is there twice or has an index
+    /// beyond the scene's cones.
+    std::optional<double> objective;
+    std::size_t along_heading = 0;  ///< edges that count in (9)
+    /// Whether a violation stays if edges are added: any but (3), (9), (11), (17) and the pairing.
     bool is_final = false;
 };
 
-/// Recomputes every constraint of the model and the objective from the scene alone. Shares no code with the
-/// builders of problem and program. A value that exceeds its limit by at most 1e-9 keeps it.
+/// Recomputes every constraint of the model and the objective from scene and parameters. Shares no code with
+/// the builders of problem and program. A value that exceeds its limit by at most 1e-9 keeps it.
 [[nodiscard]] CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph);
 
 /// What a solver claims about a lane graph.
@@ -34,8 +34,8 @@ struct Claim {
     double absolute_gap = 1e-6;
 };
 
-/// The same, and whether the claimed objective is the recomputed one within 1e-6, whether the bound is not
-/// above the objective, and whether an optimal claim has a bound within the gap.
+/// The same, then the claim against the recomputed objective c, to within 1e-6 max(1, |c|): it claims c, a
+/// bound is not above c, and if it claims an optimum, it has a bound within the gap of c.
 [[nodiscard]] CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph,
                                 const Claim& claim);
 

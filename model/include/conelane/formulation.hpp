@@ -4,10 +4,10 @@
 
 namespace conelane {
 
-/// Two programs with the same integer points.
+/// Two programs whose integer points give the same sets of edges.
 enum class Formulation {
     paper,  ///< the rows as printed (after the errata), every variable binary
-    tight,  ///< stronger relaxation, fewer rows; only edges are integer
+    tight,  ///< stronger relaxation, fewer rows; only edges and path ends are integer
 };
 [[nodiscard]] std::string_view to_string(Formulation formulation);
 

@@ -12,7 +12,7 @@ class InvalidInput : public std::invalid_argument {
     InvalidInput(const std::string& key, const std::string& reason)
         : std::invalid_argument(key + ": " + reason), key_(key) {}
 
-    /// The key as the file formats spell it, such as "cones[3].x".
+    /// The key as the file formats spell it, such as "cones[3].x", or the name of an option.
     [[nodiscard]] const std::string& key() const { return key_; }
 
   private:

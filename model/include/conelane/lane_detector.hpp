@@ -15,8 +15,8 @@ namespace conelane {
 
 enum class LaneStatus {
     found,
-    none,     ///< the scene has no feasible lane, by proof or complete search
-    stopped,  ///< no lane that can be driven was found; LaneAnswer::stopped_by names a limit
+    none,     ///< no lane keeps the detector's rules, by proof or complete search
+    stopped,  ///< no lane that can be driven was found; see LaneAnswer::stopped_by
     error,    ///< see LaneAnswer::message
 };
 [[nodiscard]] std::string_view to_string(LaneStatus status);
@@ -31,20 +31,20 @@ struct Optimality {
 /// A lane that a search found.
 struct LaneCandidate {
     Lane lane;
-    std::int64_t iteration;  ///< that found it; in a detector that ranks lanes the rank, from 1
+    std::int64_t iteration;  ///< that found it; where candidates come best first, the rank from 1
     std::optional<double> confidence = {};  ///< probability that the lane is usable
 };
 
 struct Enumeration {
     std::int64_t iterations;
-    bool complete;                          ///< the search space was exhausted before the iteration limit
+    bool complete;  ///< no limit and no beam cut the search short; of clc, from the starts tried
     std::vector<LaneCandidate> candidates;  ///< as found, or best first; empty without keep_candidates
 };
 
-/// The lane that an optimising detector has solved, if its answer has another lane or was found by another
-/// d_near. It is there to check the claims of the detector.
+/// The lane that an optimising detector has solved, to check its claims. Present if it searched among more
+/// cones than the answer may have and then cut the lane, or if it found the lane by another d_near.
 struct SolvedLane {
-    Lane lane;                                  ///< before it was cut to the cone set
+    Lane lane;                                  ///< before it was cut
     std::optional<Optimality> optimality = {};  ///< of this lane
     std::optional<double> d_near_m = {};        ///< with which it is feasible; absent: that of the parameters
 };
@@ -63,21 +63,21 @@ struct MergedCone {
 };
 
 /// A detector's answer. `lane` is empty unless status is found. It has cones on both sides, except from
-/// `front` in scenes that show only one boundary. Unknown values are absent.
+/// `front` and `front-warm`, which may see only one boundary. Unknown values are absent.
 struct LaneAnswer {
     LaneStatus status = LaneStatus::stopped;
     Lane lane;
     std::string message;
-    /// The limit that ended the search. Absent if the search ended by itself: the lane is the detector's
-    /// best.
+    /// The limit that ended the search. Absent if it ended by itself: the lane is the detector's best. With
+    /// status stopped, `iterations` also stands for lanes that a beam left out, or an undrivable lane.
     std::optional<StopReason> stopped_by;
     std::optional<double> confidence;  ///< probability that the lane is usable
-    /// Distance up to which the lane can be trusted. Every lane of a detector from `make_detector` has one.
-    /// With a confidence it follows from probabilities. Without a confidence it follows a rule: as far as
-    /// both boundaries were seen without a gap, and 10 m at most.
+    /// Distance [m] along the lane up to which it can be trusted. Every lane of a detector from
+    /// `make_detector` has one. With a confidence it follows from probabilities. Without one it is the
+    /// smallest of the lane's length, the way to its first BridgedGap, and 10 m.
     std::optional<double> trusted_m;
     std::optional<Optimality> optimality;  ///< of `lane` itself
-    std::optional<SolvedLane> solved;      ///< absent if `lane` was solved, by the detector's own parameters
+    std::optional<SolvedLane> solved;      ///< only after a cut to the cone set, or by another d_near
     std::optional<Enumeration> enumeration;
     std::vector<MergedCone> merged;  ///< by `cone`; empty if no cone is doubled
 };
@@ -102,15 +102,15 @@ class LaneDetector {
     /// exception of a search or its backend give status error and a message.
     [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
 
-    /// Cones at most this far apart [m] are one cone for this detector. Beyond kDoubledCone_m this holds only
-    /// in a scene with at least three such doubles and at least one for each ten cones.
+    /// Cones at most this far apart [m] are one cone for this detector. Cones farther apart than
+    /// kDoubledCone_m are merged only if there are three such merges, and one for each ten cones kept.
     [[nodiscard]] double doubled_cone_m() const;
 
     /// Forgets earlier scenes.
     virtual void reset() {}
 
   protected:
-    /// For a detector that merges cones up to `doubled_cone_m` [m] apart; 0.4 m at most.
+    /// For a detector that merges cones up to `doubled_cone_m` [m] apart. Precondition: from 0 to 0.4 m.
     explicit LaneDetector(double doubled_cone_m);
     /// The answer of another detector to a scene that `detect` of this one has checked already. For detectors
     /// that call another one. Precondition: that of `search`. Throws what the other's search throws.
@@ -120,7 +120,7 @@ class LaneDetector {
     }
 
   private:
-    /// Precondition: the scene is valid and has no doubles, and the limit is a number.
+    /// Precondition: the scene is valid and has no doubles, and the limit is not NaN.
     [[nodiscard]] virtual LaneAnswer search(const Scene& scene, const DetectionLimits& limits) = 0;
 
     struct Workspace;

@@ -21,8 +21,8 @@ struct Edge {
     return a < b ? Edge{a, b} : Edge{b, a};
 }
 
-/// A set of edges in ascending order. What an RLD solver answers; a lane graph in the sense of definition 1
-/// where `paths` gives exactly two.
+/// A set of edges in ascending order: what an RLD solver answers. It is a lane graph in the sense of the
+/// paper's definition 1 only if `paths` gives exactly two paths.
 struct LaneGraph {
     std::vector<Edge> edges;
 
@@ -30,14 +30,14 @@ struct LaneGraph {
 };
 
 /// The simple paths that the edges form, each as cone indices from the end with the smaller index, ordered by
-/// that index. Nothing if the edges hold a cycle, a cone of degree above two or an index not below
-/// `cone_count`.
+/// that index. Nothing if the edges hold a cycle, an edge that is a loop or there twice, a cone of
+/// degree above two or an index not below `cone_count`.
 [[nodiscard]] std::optional<std::vector<std::vector<std::size_t>>> paths(const LaneGraph& graph,
                                                                          std::size_t cone_count);
 
-/// The lane that a lane graph bounds. Each path starts at the end nearer to the car; left is the path whose
-/// point nearest to the car lies farther to the left of the car's axis. Ties: the first path is left, the
-/// first end starts. Nothing unless the graph consists of exactly two simple paths.
+/// The lane whose boundaries are the two paths. Each path starts at the end nearer to the car; left is the
+/// path whose point nearest to the car lies farther to the left of the car's axis. Ties: the first of
+/// `paths` is left; the end of smaller index starts. Nothing unless the graph is exactly two simple paths.
 [[nodiscard]] std::optional<Lane> to_lane(const LaneGraph& graph, const Scene& scene);
 
 /// A lane graph of one scene as edges of the next. Cones with the same id are the same; an edge with a cone

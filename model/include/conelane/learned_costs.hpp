@@ -21,7 +21,7 @@ inline constexpr std::array kLearnedParts{LearnedPart::edge, LearnedPart::turn, 
 /// A measured number that a learned cost depends on.
 struct LearnedFeature {
     std::string_view name;
-    std::string_view unit;    ///< of what is measured, before it is divided by its scale
+    std::string_view unit;    ///< what the value 1 stands for, such as "3 m"; "1": a plain number
     std::string_view reason;  ///< what a high value means
 };
 /// All features of a part, in the order of their weights. The first one is 1 everywhere.
@@ -31,18 +31,18 @@ struct LearnedFeature {
 /// the order of the numbers, in double, without fused operations: the result is the same on every machine.
 struct LearnedNetwork {
     std::vector<double> linear;  ///< one a feature
-    std::vector<double> hidden;  ///< one a feature and unit, feature after feature
+    std::vector<double> hidden;  ///< hidden_u of feature i is number i * units() + u
     std::vector<double> output;  ///< one a unit
 
     [[nodiscard]] static LearnedNetwork zero(std::size_t features, std::size_t units);
     [[nodiscard]] std::size_t units() const { return output.size(); }
-    /// Precondition: as many features as `linear`.
+    /// Precondition: the network is valid for this number of features.
     [[nodiscard]] double operator()(std::span<const double> features) const;
     bool operator==(const LearnedNetwork&) const = default;
 };
 
-/// Throws InvalidInput naming network and list, such as `edge.hidden`, if a size is wrong or a number is not
-/// finite or beyond 1e6.
+/// Throws InvalidInput naming network and list, such as `edge.hidden`, if a size is wrong, a number is not in
+/// [-1e6, 1e6], or there are more than 256 units.
 void validate(const LearnedNetwork& network, std::string_view name, std::size_t features);
 
 /// A network for each part of a program. Part: an enumeration with parts_of, to_string and learned_features.
@@ -73,7 +73,7 @@ void validate(const PartNetworks<Part>& costs) {
 /// Learned costs of the lane graph problem, by part. They are added to the costs of (29):
 /// - of an edge, the network itself,
 /// - of a turn, the network where it is positive, else 0, so that no turn gains,
-/// - of a near or far end, the network where it is negative, else 0, so that every end gains.
+/// - of a near or far end, the network where it is negative, else 0, so that no end costs.
 /// The signs restrict nothing: every lane graph has two near and two far ends, and two turns fewer than
 /// edges. So a constant that moves from turns to edges, or is added to all ends, changes no optimum.
 struct LearnedCosts : PartNetworks<LearnedPart> {

@@ -6,8 +6,8 @@
 
 namespace conelane {
 
-/// A position or a vector in the map frame [m]. Members are called as Eigen calls them, and conversions from
-/// and to a vector of Eigen are implicit, so code may use either; this header reads no other library.
+/// A position or a vector in the plane [m]; a direction has no unit. Members are called as Eigen calls them,
+/// and conversions from and to Eigen's vectors are implicit; this header needs no other library.
 class Point {
   public:
     constexpr Point() = default;  ///< 0, 0

@@ -54,9 +54,9 @@ struct PositionCovariance {
     double yy_m2 = 0.0;
 
     bool operator==(const PositionCovariance&) const = default;
-    /// Finite and positive semidefinite; a correlation may be above 1 by at most 1e-6, which rounding does.
+    /// Finite and positive semidefinite; rounding may put a correlation beyond 1 or -1 by at most 1e-6.
     [[nodiscard]] bool is_valid() const;
-    /// Variance along a unit vector [m^2].
+    /// Variance along a unit vector [m^2], at least 0.
     [[nodiscard]] double along_m2(const Point& direction) const;
 };
 
@@ -65,11 +65,11 @@ struct Cone {
     Point position{0.0, 0.0};  ///< [m], map frame
     ConeColor color = ConeColor::unknown;
     double confidence = 1.0;  ///< of the detection, in [0, 1]
-    /// Class probabilities. If present, `front` and RldParameters::w_color use them instead of `color`; the
-    /// other detectors use `color` alone.
+    /// Class probabilities. If present, `front`, `front-warm` and ProblemEdge::color_cost use them instead of
+    /// `color`. The planner and the learned feature `same_color` use `color` alone.
     std::optional<ColorProbabilities> color_probabilities{};
-    /// How uncertain the position is. `front` uses it; the other detectors do not. Absent: unknown, which
-    /// gives the same answers as 0.
+    /// How uncertain the position is. Only `front` and `front-warm` use it. Absent: unknown, which gives the
+    /// same answers as 0.
     std::optional<PositionCovariance> position_covariance{};
 
     /// `color_probabilities`, or else those of `color`.

@@ -14,7 +14,7 @@ namespace conelane {
 /// Properties that not every solver has, joined by |.
 enum class SolverTrait : unsigned {
     none = 0,
-    exact = 1U << 0U,  ///< proves its optimum; others are heuristics, whose best status is feasible
+    exact = 1U << 0U,               ///< proves its optimum; others are heuristics and never claim one
     uses_formulation = 1U << 1U,    ///< others ignore the formulation
     suits_paper = 1U << 2U,         ///< fast with Formulation::paper of 12 cones; others take seconds
     reads_time_of_day = 1U << 3U,   ///< a clock that is set during a solve changes its time limit

@@ -15,12 +15,12 @@ class RldSolver {
     [[nodiscard]] virtual EdgeExtent extent() const { return EdgeExtent::candidates; }
 
     /// The time limit includes building the program. A problem or a program that is too large (is_too_large,
-    /// kMaxProgramEntries) gives status stopped by memory. Invalid limits (see `invalidity`) and a failing
-    /// backend give status error and a message.
+    /// kMaxProgramEntries) gives status stopped by memory. Invalid limits (see `invalidity`), a failing
+    /// backend and more cones than RldSolverEntry::max_cones give status error and a message.
     ///
-    /// Every answer is verified against the problem (model/answer_verification.hpp). Status error and a
-    /// message follow from a broken constraint, a wrong objective, a bound above a known lane graph, and an
-    /// optimum or infeasibility that the start refutes. Throws only std::bad_alloc.
+    /// Every answer is verified against the problem (model/answer_verification.hpp), to 1e-6 max(1, |cost|).
+    /// A broken constraint, a wrong objective, a bound above a known lane graph, and an optimum or
+    /// infeasibility that the start refutes give status error and a message. Throws only std::bad_alloc.
     [[nodiscard]] RldReport solve(const LaneGraphProblem& problem, const SolveArguments& arguments);
 
   protected:

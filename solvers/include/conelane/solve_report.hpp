@@ -14,9 +14,9 @@ namespace conelane {
 enum class SolveStatus {
     optimal,     ///< the objective is within the absolute gap of the bound
     feasible,    ///< an incumbent that is not proven optimal; `stopped_by` names the limit that ended the
-                 ///< search; absent from a heuristic that ended by itself
+                 ///< search, or is absent from a heuristic
     infeasible,  ///< the problem is proven to have no solution
-    stopped,     ///< no incumbent, no proof; `stopped_by` names the limit, absent from a heuristic
+    stopped,     ///< no incumbent, no proof; `stopped_by` names the limit
     error,       ///< see the message; a feasible start is kept
 };
 [[nodiscard]] std::string_view to_string(SolveStatus status);
@@ -27,7 +27,7 @@ enum class SolveStatus {
 struct SolveLimits {
     /// Wall clock, from the call; infinity for no limit. At 0 and below nothing is tried.
     double time_limit_ms = std::numeric_limits<double>::infinity();
-    double absolute_gap = 1e-9;  ///< an incumbent this close to the bound is optimal; at least 0
+    double absolute_gap = 1e-9;  ///< an incumbent this close to the bound counts as optimal; >= 0
 };
 /// What is wrong with the limits, in words; empty if they are valid. NaN is invalid.
 [[nodiscard]] std::string_view invalidity(const SolveLimits& limits);
@@ -36,9 +36,9 @@ struct SolveLimits {
 struct SolveArguments {
     SolveLimits limits = {};
     /// A lane graph that solvers may use as their first incumbent, or nullptr. An infeasible start is
-    /// dropped. The report has a feasible start or a cheaper lane graph, also if status is error.
+    /// dropped. The report has a feasible start, a cheaper lane graph, or an optimum within the gap of it.
     const LaneGraph* start = nullptr;
-    /// Another order of the search, in solvers that can change it, as programs from outside; 0: their own.
+    /// Not 0: programs from outside get columns and rows in an order drawn from it. Other solvers ignore it.
     std::uint64_t seed = 0;
 };
 
@@ -46,11 +46,11 @@ struct SolveArguments {
 struct RldReport {
     SolveStatus status = SolveStatus::error;
     std::optional<StopReason> stopped_by;
-    std::optional<LaneGraph> lane_graph;  ///< if status is optimal or feasible; the start if it is error
+    std::optional<LaneGraph> lane_graph;  ///< if optimal or feasible; a feasible start also if error
     std::optional<double> objective;      ///< recomputed from the lane graph
     std::optional<double> bound;          ///< proven lower bound
-    std::int64_t nodes = 0;
-    int rounds = 0;         ///< number of times the program was solved: rounds of separated rows plus one
+    std::int64_t nodes = 0;               ///< of the search; each solver counts its own
+    int rounds = 0;         ///< how often it was solved: of a MILP solver, rounds of separated rows plus one
     double build_ms = 0.0;  ///< making the program from the problem
     double solve_ms = 0.0;
     std::string message;
