@@ -136,10 +136,10 @@ constexpr const char* kDetector = R"(Detector(name: str, **options)
 A lane detector.
 
 name: One of `methods()`.
-nearest: Number of cones that it uses: the nearest ones ahead of the car.
-parameters: Of the detectors `rld-...`: the name of a parameter set, or a dict of the values that differ from the
-    defaults; see `rld_parameters`.
-pairing: Of the detectors `rld-...`: "near_far" or "paper".
+nearest: Number of cones that the lane may have: the nearest ones ahead of the car.
+parameters: Of the detectors `rld-...` except `rld-strip`: the name of a parameter set, or a dict of the values that
+    differ from `rld_parameters()`.
+pairing: Of the same detectors: "near_far" or "paper".
 weights: Of the detectors `front`, `front-warm` and `rld-strip`: weights of your own instead of the shipped ones. The
     path of a file that ``conelane train front`` or ``train strip`` wrote, or its content as bytes.
 Raises ValueError for an unknown name or option, listing the known ones, for an option that the detector does not use, for
@@ -171,14 +171,14 @@ pose: (3,), the car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a
 ids: (N,), distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its id.
     By default the index.
 colors: (N,), "unknown", "blue", "yellow", "orange", "big_orange", or their codes 0 to 4 (`Color`). Or probabilities
-    of unknown, blue, yellow, small orange and big orange, which add up to 1 for each cone: `front` uses them, other
-    detectors the most probable label. By default unknown.
+    of unknown, blue, yellow, small orange and big orange, (N, 5), which add up to 1 for each cone: `front` and the
+    parameter `w_color` use them, other detectors the most probable label. By default unknown.
 confidences: (N,), of the detections, in [0, 1]. By default 1.
 time_limit_ms: Wall clock [ms]; None for no limit.
 covariances: (N, 2, 2), of the positions [m^2], in the frame of `pose`: symmetric and positive semidefinite. `front`
     uses them. By default unknown, which is the same as 0.
-Raises ValueError for wrong shapes and dtypes, numbers that are not finite, an invalid covariance, and an id that occurs
-    twice.
+Raises ValueError for wrong shapes and dtypes, numbers that are not finite or out of range, an invalid covariance, and an
+    id that occurs twice.
 
 >>> import conelane
 >>> conelane.Detector("clc").detect([[0.0, float("nan")]], (0, 0, 0))
@@ -269,7 +269,7 @@ braking; across and along, the tyres share their grip (the friction ellipse).
 centre_line: (N, 7), columns as of `Lane.centre_line`, for example of a plan.
 v_now: Speed at the first point [m/s]. If the first speed of the result is lower, the car has to brake at once.
 stop_at_m: Where the car has to be at rest [m], for example `Plan.safe_m`; None for nowhere.
-a_lateral, a_brake, a_drive, v_max: Limits across the car, along it by the tyres and by the motor [m/s^2]; of the speed.
+a_lateral, a_brake, a_drive, v_max: Limits across the car, along it by the tyres and by the motor [m/s^2]; speed [m/s].
 Returns (N, 4): s [m], speed [m/s], acceleration up to the next row [m/s^2], time [s]; the time behind a stop is inf.
 Raises ValueError for wrong shapes, and for a limit that is not positive and finite.
 
@@ -343,46 +343,45 @@ The plan of the next frame.
 cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
 pose: (3,), the car in a fixed map: x, y [m] and yaw [rad].
 time_s: Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
-    nothing: its plan is the last plan, with the state "bridging" if the frame is older.
+    nothing: its plan is the last plan, with "bridging" instead of "following" unless it is the last frame again.
 ids: (N,), distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised
     by its place.
-colors: (N,), as in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on
-    both sides of the lane are the start line, big ones before others.
-time_limit_ms: Of the detector, wall clock [ms]; None for no limit.
+colors: As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both
+    sides of the lane are the start line, big ones before others.
+time_limit_ms: Of the detector and of the search for the place of a known course, wall clock [ms]; None for no limit.
 confidences: (N,), of the detections, in [0, 1]. By default 1.
-covariances: (N, 2, 2), as of `Detector.detect`. They are checked, and the planner does not use them: it keeps means
-    of many sightings.
-Raises ValueError for wrong shapes and dtypes, numbers that are not finite, and an id that occurs twice; the planner then
-    stays unchanged.
+covariances: (N, 2, 2), as of `Detector.detect`. In trackdrive and autocross they are only checked: the planner keeps
+    means of many sightings.
+Raises ValueError as `Detector.detect`, and for a `time_s` that is not finite; the planner then stays unchanged.
 )";
 
 constexpr const char* kCourse = R"(course() -> Optional[NDArray[float64]]
 
-The whole course, once a lap is known.
-Returns (N, 7), columns as of `Lane.centre_line`; the last row is one step before the first one. None before that, and
-    in acceleration and skidpad.
+The whole course, while a lap is known.
+Returns (N, 7), columns as of `Lane.centre_line`; the last row is one step before the first one. None before that, after
+    more than 6 m without a lane until the next lap, and in acceleration and skidpad.
 )";
 
 void add_plan(py::module_& module) {
     Class<PlanObject>(module, "Plan", "The path to drive. Every attribute is a copy.")
         .get(
             "state",
-            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame, or the known
-course, which this frame confirms; "bridging": no lane in this
-frame, so the rest of an earlier one; "lost": no earlier lane is left, so there is no path: brake; "finished": the
+            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame, or of a known
+course, which this frame confirms; "bridging": this frame gives no lane to
+follow, so the rest of an earlier one; "lost": no earlier lane is left, so there is no path: brake; "finished": the
 last line is crossed, and the lane is the stretch on which to come to rest.)",
             &PlanObject::state, kName)
         .get(
             "centre_line",
-            R"(NDArray[float64]: (N, 7), that of `lane`, from the car on. N is 0 if the state is "searching" or "lost", and when the
-car is at rest at the end.)",
+            R"(NDArray[float64]: (N, 7), that of `lane`, from the car on. N is 0 if the state is "searching" or "lost", and once the
+stretch to come to rest on is driven.)",
             &PlanObject::lane, kArray)
         .get("lane", "DrivableLane: the lane to drive", &Plan::lane)
-        .get("safe_m", "float: trusted length along `centre_line`, or the rest of it [m]", &Plan::safe_m)
+        .get("safe_m", "float: length of `centre_line` that is trusted [m]", &Plan::safe_m)
         .get("age_s", "float: age of the frame that the lane is from [s]; 0 if following", &Plan::age_s)
-        .get("lap", "int: number of start lines crossed since the start; in skidpad, of completed circles",
+        .get("lap", "int: number of laps driven; in skidpad of completed circles, in acceleration 0",
              &Plan::lap)
-        .get("stop", "bool: come to rest within the rest of `centre_line`", &Plan::stop)
+        .get("stop", "bool: the last line is crossed: come to rest on `centre_line`", &Plan::stop)
         .get(
             "stop_line_m",
             R"(Optional[float]: distance along `centre_line` to the line behind which the car has to stop [m]; None while that
@@ -390,12 +389,12 @@ line is not on the lane, not known, or crossed)",
             &Plan::stop_line_m)
         .get(
             "reason",
-            R"(str: why the course of the lap before is not trusted as far as it is known, or why the path is lost; else empty)",
+            R"(str: why the course of the lap before is not trusted to its end, or why the path is lost; else empty)",
             &Plan::reason)
         .get("phase",
              R"(str: of skidpad "approach", "right 1", "right 2", "left 1", "left 2" or "exit"; else empty)",
              &Plan::phase)
-        .get("answer", "Answer: of the detector in this frame", &Plan::answer)
+        .get("answer", "Answer: of the detector to this frame; stopped if it did not run", &Plan::answer)
         .get("latency_ms", "float: wall clock of the update [ms]", &PlanObject::latency_ms)
         .repr([](const PlanObject& p) {
             return py::str("<conelane.Plan {}: {:.1f} m>").format(to_string(p.state), p.lane.length_m);
@@ -433,8 +432,8 @@ void add_detector(py::module_& module) {
         .method(kDetectScene, detect_scene)
         .method("reset() -> None\n\nForgets earlier calls: for a new lap or another place.\n",
                 &DetectorObject::reset)
-        .get("name", "str: as `methods` has it", &DetectorObject::name)
-        .get("meaning", "str: one line", &DetectorObject::description)
+        .get("name", "str: one of `methods()`", &DetectorObject::name)
+        .get("meaning", "str: description in one line", &DetectorObject::description)
         .repr([](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
     add_function(module, kMethods, methods);
     add_function(module, kSpeedProfile, speeds);

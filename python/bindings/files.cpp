@@ -91,7 +91,7 @@ void write_lanes(const std::filesystem::path& file, const std::vector<const Lane
 constexpr const char* kReadScenes =
     R"(read_scenes(file: Union[str, "PathLike[str]"]) -> List[Scene]
 
-Scenes of a `*.scenes.jsonl` file. A scene without an id gets its line number.
+Scenes of a `*.scenes.jsonl` file. A scene without an id gets its line number, from 1.
 Raises ValueError, naming file, line and key.
 )";
 
@@ -121,7 +121,7 @@ closed: Whether the course is a circuit.
 constexpr const char* kReadBoundaries =
     R"(read_boundaries(file: Union[str, "PathLike[str]"]) -> Dict[str, Boundaries]
 
-Boundaries of the courses of a scenes file, from the `*.tracks.json` file beside it.
+Boundaries of the courses of a scenes file, from `file`, the `*.tracks.json` file beside it.
 Returns by the name of the track.
 Raises ValueError, naming file and key.
 )";
@@ -157,7 +157,7 @@ What a car sees along a track, with the true lane.
 false_positive_rate: Share of false cones among all points of a scene, in [0, 0.99].
 range_m: Radius of the half disc ahead that is visible [m].
 every_m: Travel from scene to scene [m].
-condition: "paper", "car" or "harsh": noise, missed cones, and false ones that stay where they are.
+condition: "paper", undisturbed; "car", "harsh" or "slam": noise, missed cones, false ones that stay in place.
 with_color: Whether cones show the colours of the track.
 seed: The same seed gives the same scenes.
 noise_by_range: Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise
@@ -277,9 +277,9 @@ Compares a lane with the true one. The measures are defined in docs/measures.md.
 
 scene: With a ground truth, or of a run whose boundaries have the driven path.
 lane: Of this scene: cones are compared by their ids.
-boundaries: Of the whole course. Without them divergence is unknown.
-Raises ValueError if the scene has no ground truth with two cones on each side, or if the lane names a cone that the scene
-    does not have.
+boundaries: Of the whole course. Without them divergence is unknown, and `usable` is None.
+Raises ValueError if the scene has neither a ground truth with two cones on each side nor 5 m of a driven path, or if the
+    lane names a cone that the scene does not have.
 
 >>> import conelane
 >>> track = conelane.load_tracks("generated:circle")[0]
@@ -300,13 +300,13 @@ void add_score(py::module_& module) {
         .get("success", "bool: any category but none and diverging_below_20", &SceneScore::success)
         .get("accurate", "Optional[bool]: passes the four checks of the RLD paper; None if they do not apply",
              accurate)
-        .get("error", "bool: the method failed", &SceneScore::error)
+        .get("error", "bool: the detector failed", &SceneScore::error)
         .get("iou", "Optional[float]: intersection over union with the true lane, in [0, 1]",
              &SceneScore::iou)
         .get("lane_length_m", "float: of the lane [m]", &SceneScore::lane_length_m)
         .get("ground_truth_length_m", "float: of the true lane [m]", &SceneScore::ground_truth_length_m)
         .get("divergence_distance_m",
-             "Optional[float]: distance at which the lane leaves the course [m]; None if it does not",
+             "Optional[float]: distance at which the lane leaves the course [m]; None if unknown or never",
              &SceneScore::divergence_distance_m)
         .get("lateral_error_m",
              "Optional[NDArray[float32]]: (K,), lateral error of the centre line every 0.5 m [m]; for usable "

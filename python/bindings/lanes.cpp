@@ -88,7 +88,7 @@ smoothing_m: Length scale of the smoothing [m], in [0.25, 5].
 usual_width_m: Width of a lane of which only one boundary was found [m], in [1, 6.5].
 Returns (M, 7), columns: s, the arc length from the car's foot point [m]; x, y [m]; heading [rad], in (-pi, pi];
     curvature [1/m], positive in a left bend; distance to the left and to the right boundary [m]. M is 0 if there is
-    no lane.
+    no lane that can be driven.
 
 >>> import conelane
 >>> cones = [[0, -1.5], [0, 1.5], [4, -1.5], [4, 1.5], [8, -1.5], [8, 1.5]]
@@ -103,7 +103,7 @@ constexpr const char* kDrivable =
     R"(drivable(step_m: float = 0.5, *, smoothing_m: float = 1.75, max_gap_m: float = 5.5,
          default_width_m: float = 3.5) -> DrivableLane
 
-The centre line with the gaps that it bridges and the boundary that was inferred.
+The centre line with the gaps that it bridges and whether a boundary was inferred.
 
 step_m, smoothing_m: As of `centre_line`.
 max_gap_m: Longer gaps of a boundary are reported as bridged [m].
@@ -128,7 +128,7 @@ that can be driven was found; "error": see `message`.)",
             steps..., &LaneAnswer::status, kName)
         .get("found", "bool: whether the status is \"found\"", steps..., &LaneAnswer::status,
              [](LaneStatus status) { return status == LaneStatus::found; })
-        .get("message", "str: of an error, or of a lane that is stopped because it cannot be driven",
+        .get("message", "str: of an error; why a found lane cannot be driven; that another d_near was used",
              steps..., &LaneAnswer::message)
         .get("stopped_by",
              R"(Optional[str]: the limit that ended the search: "time", "iterations" or "memory")", steps...,
@@ -179,9 +179,9 @@ void add_record(Class<LaneObject>& lane) {
         .get(
             "merged",
             R"(Dict[int, int]: ids of the cones that the detector left out, because each is within 0.12 m of another cone (front,
-front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)",
+front-warm: 0.35 m if there are many), and the id that represents both; empty for a lane from a file)",
             merged)
-        .get("objective", "Optional[float]: of a detector that states one",
+        .get("objective", "Optional[float]: cost of the lane, of a detector that states one",
              [](const LaneObject& l) { return of_proof(l, &Optimality::objective); })
         .get("bound", "Optional[float]: proven lower bound of the objective",
              [](const LaneObject& l) { return of_proof(l, &Optimality::bound); })
@@ -199,7 +199,7 @@ void add_answer_of_plan(py::module_& module) {
         .get(
             "left_ids",
             R"(NDArray[int64]: (L,), cones of the left boundary from the car outward, by the ids of the frames; a cone without an id
-has a negative id of the planner's own)",
+has one from the planner, negative in trackdrive and autocross)",
             &LaneAnswer::lane, &Lane::left, kArray)
         .get("right_ids", "NDArray[int64]: (R,), the same for the right boundary", &LaneAnswer::lane,
              &Lane::right, kArray)
@@ -213,7 +213,7 @@ void add_drivable_lane(py::module_& module) {
     Class<DrivableLane>(module, "DrivableLane", "A lane ready to be driven. Every attribute is a copy.")
         .get("centre_line", "NDArray[float64]: (N, 7), columns as of `Lane.centre_line`",
              [](const DrivableLane& d) { return array(d); })
-        .get("closed", "bool: the last row is one step before the first one", &DrivableLane::closed)
+        .get("closed", "bool: a circuit: the last row is one step before the first", &DrivableLane::closed)
         .get("length_m", "float: of the centre line [m]", &DrivableLane::length_m)
         .get("trusted_m", "Optional[float]: arc length up to which the detector trusts the lane [m]",
              &DrivableLane::trusted_m)

@@ -73,15 +73,15 @@ constexpr const char* kSolveRld =
           pairing: Optional[str] = None, solver: str = 'path-pair', time_limit_ms: Optional[float] = None,
           absolute_gap: float = 1e-09) -> RldSolution
 
-The lane graph of least cost: RLD, solved to its proven optimum.
+The lane graph of least cost: RLD, solved to its proven optimum unless a limit ends the search.
 
 cones, pose, ids, colors, confidences: As `Detector.detect` takes them.
-parameters: Name of a parameter set, or a dict of the values that differ from the defaults; see `rld_parameters`.
+parameters: Name of a parameter set, or a dict of the values that differ from `rld_parameters()`.
 pairing: "near_far" or "paper", instead of the parameters'.
 solver: "path-pair", or "exhaustive" for at most 9 cones; both are exact.
 time_limit_ms: Wall clock [ms]; None for no limit.
 absolute_gap: A lane graph whose cost is this close to the bound counts as optimal.
-Raises ValueError as `Detector.detect`, and for unknown names and parameters out of range.
+Raises ValueError as `Detector.detect`, and for unknown names and for parameters and limits out of range.
 
 >>> import conelane
 >>> cones = [[1, -1.5], [1, 1.5], [4, -1.5], [4, 1.5], [7, -1.5], [7, 1.5]]
@@ -99,7 +99,7 @@ constexpr const char* kRldParameters = R"(rld_parameters(name: str = 'default') 
 Parameters of the RLD model.
 
 name: "default" or one of the tuned sets; an unknown name lists them.
-Returns lengths in metres, angles in radians.
+Returns lengths in metres, angles in radians; without the learned costs that belong to the set "learned".
 
 >>> import conelane
 >>> conelane.rld_parameters()["d_max"]

@@ -41,7 +41,7 @@ The input of one call of a detector, and the truth for scoring. Every attribute 
 cones, pose, ids, colors, confidences, covariances: As `Detector.detect` takes them.
 id: Id of the scene.
 ground_truth: The true left and right boundary from the car outward, as indices into `cones`.
-closed: Whether that is a whole circuit.
+closed: Whether the ground truth is a whole circuit.
 track: Name of its course.
 
 >>> import conelane
@@ -67,16 +67,16 @@ void add_scenes(py::module_& module) {
              &Scene::cones, python::confidences)
         .get("covariances",
              "Optional[NDArray[float64]]: (N, 2, 2), of the positions [m^2]; 0 for a cone without one, None "
-             "where no cone has one",
+             "if no cone has one",
              &AnnotatedScene::scene, &Scene::cones, python::covariances)
         .get("ground_truth",
              "Optional[Tuple[NDArray[int64], NDArray[int64]]]: left and right, as indices into `cones`",
              ground_truth)
         .get("closed", "bool: whether the ground truth is a whole circuit",
              [](const AnnotatedScene& s) { return s.ground_truth && s.ground_truth->closed; })
-        .get("track", "str: its name", &AnnotatedScene::track)
-        .get("condition", "str: its name", &AnnotatedScene::condition)
-        .get("false_positive_rate", "Optional[float]: share of all points",
+        .get("track", "str: name of the course", &AnnotatedScene::track)
+        .get("condition", "str: its name, or empty", &AnnotatedScene::condition)
+        .get("false_positive_rate", "Optional[float]: share of false cones among all",
              &AnnotatedScene::false_positive_rate)
         .get("range_m", "Optional[float]: how far the car sees [m]", &AnnotatedScene::range_m)
         .repr([](const AnnotatedScene& s) {

@@ -6,8 +6,8 @@
 >>> lane.centre_line(step_m=1.0).shape
 (9, 7)
 
-Lengths are in metres, angles in radians (counter-clockwise, 0 along +x), times in milliseconds. Invalid
-input raises a `ValueError`.
+Lengths are in metres, angles in radians (counter-clockwise, 0 along +x), times in milliseconds (`..._ms`) or
+seconds (`..._s`). Invalid input raises a `ValueError`.
 """
 from enum import IntEnum
 

@@ -48,11 +48,11 @@ class Mapping(NamedTuple):
     """What conelane has to be told of a log or a system; nothing where it can be seen from the messages.
 
     cones, pose: Topics. Needed if there are several, and for cones of MarkerArray and PointCloud2.
-    map_frame: Frame of reference of the run. By default that of the poses.
-    car_frame: The car's frame of reference. By default the child of Odometry, "base_link" or "base_footprint".
-    cones_frame: Frame of reference of the cones, instead of that in their header. A message without header is in the map.
+    map_frame: Frame of reference of the run. By default the root of the tree of frames that the car's is in.
+    car_frame: The car's frame of reference. By default the child of Odometry, else "base_link" or "base_footprint".
+    cones_frame: Frame of reference of the cones, instead of that in their header; by default without header: the map.
     types: `Fields` by the name of a message type, such as "my_msgs/Cones".
-    definitions: The text of their .msg files, for ROS 2 bags without definitions.
+    definitions: By the same name the text of the .msg file, for ROS 2 bags without definitions.
     """
 
     cones: Optional[str] = None
@@ -149,7 +149,7 @@ class MessageFrames:
     """Makes frames of messages. A message may be an object or a dict, as of `conelane.messages`; `type_name` names its type.
 
     mapping: See `Mapping`.
-    most: Number of poses that are kept of a frame of reference; None for all.
+    most: So many poses of a frame of reference are kept, and for a while up to twice as many; None for all.
     """
 
     def __init__(self, mapping: Mapping = Mapping(), most: Optional[int] = None) -> None:
@@ -166,7 +166,7 @@ class MessageFrames:
         return fields.read if fields else READERS.get(_plain(type_name))
 
     def add_poses(self, type_name: str, message: Any, is_fixed: bool = False) -> None:
-        """Of a message of one of the types of poses. Raises ValueError for numbers that are no pose."""
+        """Adds the poses of a message of one of `POSE_TYPES`. Raises ValueError for numbers that are no pose."""
         if _plain(type_name) in _TF:
             for one in _field(message, "transforms"):
                 child = _field(one, "child_frame_id").lstrip("/")
@@ -203,8 +203,8 @@ class MessageFrames:
         return _Sighting(stamp_ns, self._cones_frame or frame, reader(message))
 
     def frame(self, sighting: _Sighting, start_ns: int = 0) -> Frame:
-        """The frame of a sighting, `time_s` after `start_ns`. Cones that are not finite are left out; so are ids of which one
-        occurs twice. Raises NoPose."""
+        """The frame of a sighting; its `time_s` counts from `start_ns`. Cones that are not finite are left out. If an id occurs
+        twice, the frame has no ids. Raises NoPose."""
         car_frame, map_frame = self._frame_of_car, self.frame_of_map
         car = self._between(car_frame, map_frame, sighting.stamp_ns)
         if sighting.frame in (None, map_frame):
@@ -232,7 +232,7 @@ class MessageFrames:
 
     @property
     def frame_of_map(self) -> str:
-        """The frame of reference of the run: the told one, or the root of the car's."""
+        """The frame of reference of the run: that of the mapping, or the root of the tree that the car's is in."""
         frame, seen = self._frame_of_car, set()
         while self.map_frame is None and frame in self._edges and frame not in seen:
             seen.add(frame)

@@ -180,7 +180,7 @@ class PathPlanner:
     path_length_m: Length of the path [m]; shorter if the lane ends before.
     points: M, rows of the path.
     time_limit_ms: Of each call [ms].
-    max_path_age: Number of successive calls without a lane for which the last path is still returned; 0 for none.
+    max_path_age: For at most this many calls without a lane, `interval_s` apart, the last path is returned; 0 for none.
     interval_s: Time between calls that give no `time_s` [s].
     frame: In which frame cones and pose are given. By default recognised: in the car's frame, the cones move as the
         car drives while `vehicle_position` stays. Calls in the car's frame are answered each by itself.
@@ -209,8 +209,8 @@ class PathPlanner:
       more have the colour of the other one than its own, two at the end of the side, and before it crosses the line
       between two cones of a side that have the colour of that side. One contradicting cone is a miscoloured one.
     - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones. In acceleration and
-      skidpad the path is that of the rules, laid onto the cones, and the sorted arrays are empty. `ebs_test` is driven
-      as laps.
+      skidpad, once their place is found, the path is that of the rules, laid onto the cones, and the sorted arrays are
+      empty. `ebs_test` is driven as laps.
     - In a map calls have a memory: one planner serves one run, call by call. In the car's frame there is none: no laps
       are counted, nothing says stop, and a call without a lane has no path. Acceleration and skidpad need a map; in the
       car's frame they are refused by a `ValueError`, and so is a place that moves together with cones of the car's
@@ -299,10 +299,10 @@ class PathPlanner:
         sorted_left, sorted_right: Boundaries of this call's lane from the car outward [m]; empty where no lane is
             found.
         left_with_virtual, right_with_virtual: The same, since no virtual cones are made up.
-        left_to_right, right_to_left: For each cone the nearest one of the other side, -1 where none is within 6.5 m.
+        left_to_right, right_to_left: For each cone the index of the nearest one of the other side, -1 without one within 6.5 m.
 
-        Raises ValueError for wrong shapes and for numbers that are not finite; the planner is then as it was before. For
-            cones in the car's frame where only a map will do.
+        Raises ValueError for wrong shapes and for numbers that are not finite; the planner is then as it was before. Also
+            for cones in the car's frame in acceleration and skidpad, or while `vehicle_position` moves.
         """
         places, colors = _merge(cones)
         pose = _pose(vehicle_position, vehicle_direction)

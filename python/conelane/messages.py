@@ -1,7 +1,7 @@
 """From and to the messages of simulators, by their fields alone: no message package is needed.
 
 A message may be an object with attributes, as a ROS client library gives it, or nested dicts and lists, as a log or
-JSON does. The functions return dicts. The codes of colours are in docs/messages.md.
+JSON does. `from_...` return `Cones`, `to_...` dicts. The codes of colours are in docs/messages.md.
 
 >>> from conelane import Detector
 >>> from conelane.messages import from_fs_track, to_fs_track
@@ -31,8 +31,8 @@ class Cones(NamedTuple):
     """Cones as `Detector.detect` takes them: `detect(**cones._asdict(), pose=pose)`.
 
     cones: (N, 2), positions [m], in the frame of the message.
-    colors: (N,), codes of `Color`; or, where the message has them, probabilities of unknown, blue, yellow, small and
-        big orange.
+    colors: (N,), codes of `Color`; or, from PacSim, (N, 5), probabilities of unknown, blue, yellow, small and big
+        orange.
     confidences: (N,), None where the message has none.
     ids: (N,), None where the message has none.
     covariances: (N, 2, 2), of the positions [m^2]. None where the message has none, or only zeros, which is what a
@@ -255,11 +255,11 @@ def from_eufs(message: Any) -> Cones:
 
 def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
             covariances: Optional[ArrayLike] = None) -> Dict[str, Any]:
-    """A eufs_msgs/ConeArrayWithCovariance as dict, without header.
+    """An eufs_msgs/ConeArrayWithCovariance as dict, without header.
 
     cones: (N, 2), positions [m].
-    colors: (N,), as `Detector.detect` takes them; cones that are orange and not big_orange become small ones.
-    covariances: Row by row [m^2]; by default 0.
+    colors: (N,), names or codes of `Color`, no probabilities; orange cones become small ones. By default unknown.
+    covariances: (N, 2, 2) or, row by row, (N, 4) [m^2]; by default 0.
     Raises ValueError for wrong shapes and colours.
 
     >>> to_eufs([[3, 1]], colors=["blue"])["blue_cones"]
@@ -300,7 +300,7 @@ def _color_of_marker(rgba: Any) -> Color:
 
 
 def to_fs_track(cones: ArrayLike, colors: Optional[ArrayLike] = None) -> Dict[str, Any]:
-    """A fs_msgs/Track as dict; see `to_eufs` for the parameters.
+    """An fs_msgs/Track as dict; see `to_eufs` for the parameters.
 
     >>> to_fs_track([[1, 2]])
     {'track': [{'location': {'x': 1.0, 'y': 2.0, 'z': 0.0}, 'color': 4}]}
@@ -312,8 +312,8 @@ def from_pacsim(message: Any) -> Cones:
     """Cones of pacsim/PerceptionDetections, of pacsim/Track, or of a list of their landmarks.
 
     Landmarks whose most probable class is invisible or time keeping are no cones and are left out. `colors` are codes
-    if each cone is of one class with probability 1; small and big orange ones are orange. Else they are the
-    probabilities, divided by their sum, with those of invisible and of time keeping added to unknown.
+    if each cone is of one class with probability 1; small and big orange ones are orange. Else they are (N, 5), the
+    probabilities divided by their sum, with those of invisible and of time keeping added to unknown.
 
     message: With a list `detections`, or with `left_lane`, `right_lane` and `unknown`, of landmarks that have
         `pose.pose.position`, `class_probabilities`, `detection_probability` and, in a track, `id`. If they know it,

@@ -35,9 +35,9 @@ def replay(frames: Iterable[Optional[Frame]], planner: Planner, name: str = "run
     """The page of a run, as text of HTML.
 
     frames: As of `read_frames`; None where another run begins.
-    planner: Drives the run.
+    planner: Drives the run, with `time_limit_ms` for each frame [ms].
     name: Title of the page.
-    Raises ValueError as `Planner.update`, and if there is no frame.
+    Raises ValueError as `Planner.update`, and if `frames` is empty.
 
     >>> cones = [[x, y] for x in (2, 6, 10, 14) for y in (-1.5, 1.5)]
     >>> page = replay([Frame(cones, (0, 0, 0), 0.0)], Planner())

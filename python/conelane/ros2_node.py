@@ -2,7 +2,7 @@
 
     python -m conelane.ros2_node --ros-args -p cones_type:=eufs_msgs/msg/ConeArrayWithCovariance -r cones:=/perception/cones
 
-in   cones, pose, /tf, /tf_static    of the types in the parameters cones_type and pose_type (empty: poses of TF)
+in   cones, pose, /tf, /tf_static    cones and pose of the types in the parameters cones_type and pose_type (empty: poses of TF)
 out  path, markers, /diagnostics     as of the node for ROS 1 (experiments/examples/ros1)
 
 More parameters: mission, detector, laps (0: the mission's own), time_limit_ms, mapping (see `conelane.frames.Mapping`).
@@ -23,7 +23,7 @@ _WARN, _ERROR = b"\x01", b"\x02"
 
 
 class NodeCore:
-    """Messages in, messages out, those as dicts by their topics."""
+    """Messages in, messages out. Those that go out are dicts by their topics."""
 
     def __init__(self, planner: Planner, mapping: Mapping = Mapping(), time_limit_ms: float = 20.0) -> None:
         self._planner, self._time_limit_ms = planner, time_limit_ms
@@ -36,7 +36,7 @@ class NodeCore:
         return self._answer(self._waiting, is_last=False)
 
     def on_cones(self, type_name: str, message: Any, received_ns: int) -> Dict[str, Any]:
-        """What is to be published; nothing while the cones wait for a pose. Cones that still wait are given up."""
+        """What is to be published; nothing while the cones wait for a pose. Cones of an earlier message that still wait are given up."""
         given_up = self._answer(self._waiting, is_last=True)
         self._waiting = None
         try:

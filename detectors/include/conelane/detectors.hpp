@@ -26,10 +26,10 @@ namespace conelane {
 /// Whether a detector may answer with a closed lane (Lane::closed), a whole lap in view.
 enum class ClosedLanes { never, possible };
 
-/// What a detector does with the colors of cones. Unknown colors never matter.
+/// What a detector does with the colors of cones. Every detector takes cones of unknown color.
 enum class ColorUse {
     ignored,    ///< the lane is the same for all colors
-    by_weight,  ///< RldParameters::w_color says how much they count; by default it is 0
+    by_weight,  ///< RldParameters::w_color and learned costs weigh them; by default they do not count
     used,
 };
 
@@ -52,21 +52,21 @@ struct WeightsBytes {
 /// Options of a detector. An absent option keeps the detector's default. An option that the detector does
 /// not use is an error.
 struct DetectorOptions {
-    std::optional<RldParameters> rld_parameters = {};  ///< rld-...: the parameters of the objective
-    std::optional<Pairing> pairing = {};               ///< rld-...: replaces the pairing of the parameters
-    /// All detectors: answer only for this many nearest cones ahead. At least 1.
+    std::optional<RldParameters> rld_parameters = {};  ///< rld-..., not rld-strip: of the objective
+    std::optional<Pairing> pairing = {};               ///< the same: replaces the parameters' pairing
+    /// All detectors: the lane has only cones among this many nearest ones ahead. At least 1.
     std::optional<std::size_t> nearest = {};
     /// front, front-warm and rld-strip: weights of your own instead of the shipped ones. The path of a file
     /// that `conelane train front` or `conelane train strip` wrote, or its content.
     std::optional<std::variant<std::filesystem::path, WeightsBytes>> weights = {};
 };
 
-/// The detector of that name. Without options it is the detector that the tables show: a learned
-/// detector has its trained weights, `rld-...` has the defaults of RldParameters, or those of
-/// with_shape_costs; tuned sets are in rld_parameter_sets.hpp. Throws InvalidInput: for an unknown name,
-/// listing the names; for an option that is out of range or that the detector does not use, naming the
-/// option; and for weights that cannot be read. Detectors are independent of each other; each serves one
-/// thread.
+/// The detector of that name. Without options it is the detector that the tables show: a learned detector
+/// has its trained weights, rld-learned the set `learned`, rld-pair and rld-context the defaults of
+/// RldParameters. rld-shape applies with_shape_costs to its parameters. Throws InvalidInput: for an unknown
+/// name, listing the names; for an option or a parameter that is out of range or that the detector does not
+/// use, naming it; and for weights that cannot be read. Detectors are independent of each other; each serves
+/// one thread.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(std::string_view name,
                                                           const DetectorOptions& options = {});
 

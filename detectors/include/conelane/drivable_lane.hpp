@@ -22,13 +22,13 @@ struct DrivablePoint {
     double width_right_m = 0.0;  ///< likewise to the right
 };
 
-/// A stretch in which two successive cones of a boundary are farther apart than the rules allow: a cone
-/// between them is missing or was not seen. No cone is added.
+/// A stretch in which two successive cones of a boundary are farther apart than DrivableOptions::max_gap_m:
+/// probably a cone between them is missing or was not seen. No cone is added.
 struct BridgedGap {
     bool on_left = false;
     double from_s_m = 0.0;  ///< beside the first cone, at least 0
-    double to_s_m = 0.0;    ///< beside the second cone; beyond DrivableLane::length_m if the first point of a
-                            ///< closed lane is in the gap
+    double to_s_m = 0.0;    ///< beside the second cone; in an open lane DrivableLane::length_m at most, in a
+                            ///< closed lane beyond it if the first point is in the gap
 };
 
 /// The centre line of a lane, for a controller.
@@ -50,8 +50,8 @@ struct DrivableLane {
 
 struct DrivableOptions {
     double step_m = 0.5;  ///< arc length from point to point, in [0.01, 100]
-    /// Length scale of the smoothing, in [0.25, 5]: waves of the centre line shorter than 2 pi times this
-    /// length are removed; a bend with a radius of twice this length keeps its radius within 2 %.
+    /// Length scale of the smoothing, in [0.25, 5]: a wave of the midpoints 2 pi times as long is halved,
+    /// shorter waves nearly vanish; a bend with a radius of twice this length keeps its radius within 2 %.
     double smoothing_m = 1.75;
     double max_gap_m = 5.5;  ///< longer gaps are reported as bridged; 5 m by the rules, plus noise; > 0
     /// Width of a lane with only one known boundary, in [1, 6.5]. The rules ask for at least 3 m;
@@ -61,27 +61,27 @@ struct DrivableOptions {
 
 /// The centre line of a lane from the car's foot point on.
 ///
-/// The two boundaries, polylines through their cones, are matched monotonically; a smoothing spline through
-/// the midpoints is the centre line. Its curvature is continuous, and it keeps at least 0.1 m from each
+/// The two boundaries, polylines through their cones, are matched monotonically; a smoothing spline near the
+/// midpoints is the centre line. Its curvature is continuous, and it keeps at least 0.1 m from each
 /// boundary: it is smoothed less where it would come nearer. The foot point is the nearest point of
 /// the centre line whose direction is within 90 degrees of the car's heading, or the nearest of all if there
 /// is none. If a lane begins ahead of the car, its first point is the foot point.
 ///
-/// An open lane begins where both boundaries have begun. If one boundary ends first, the lane goes on
-/// along the other and keeps its width, as long as the other boundary stays within kMaxLaneWidth_m of that
-/// end and does not pass the line between the two ends. A lane ends before the first place where it is
-/// narrower than about 0.8 m, where its boundaries cross or where left and right are swapped; a closed lane
-/// is then open.
+/// If one boundary of an open lane ends first, the lane goes on along the other one and keeps its width: up
+/// to the last place of that one within kMaxLaneWidth_m of the end, its middle not past the line from the end
+/// to that place. In the same way it begins before a boundary that begins later. A lane ends before the first
+/// place where it is narrower than about 0.8 m, where its boundaries cross or where left and right are
+/// swapped; a closed lane is then open.
 ///
 /// If one side of an open lane is empty and the other has at least two cones, the empty side is inferred:
 /// beside the known boundary, at default_width_m. `left_inferred` or `right_inferred` says so.
 ///
 /// A lane without extent has no points: no cones, one cone on each side, a closed lane with an empty side,
-/// shorter than 0.5 m, or too narrow, crossed or swapped at the foot point already. Throws InvalidInput
-/// naming the key: an option out of its range, a pose that is not finite, a cone that the lane names twice or
-/// that the scene does not have (`left[2]`), a cone that is not finite or farther than 1000 km from the car,
-/// a boundary longer than 20 km, a closed lane with fewer than three cones on a side. Cones at one place
-/// count as one. The same input gives the same output.
+/// shorter than 0.5 m, or at the foot point already at its end, too narrow, crossed or swapped. Throws
+/// InvalidInput naming the key: an option out of its range, a pose that is not finite, a cone (`left[2]`)
+/// that the lane names twice, that the scene lacks or has twice, that is not finite or is farther than 1000
+/// km from the car in x or y, a boundary longer than 20 km, a closed lane of two sides with fewer than three
+/// cones on one. Successive cones at one place count as one. The same input gives the same output.
 [[nodiscard]] DrivableLane drivable(const Lane& lane, const Scene& scene,
                                     const DrivableOptions& options = {});
 

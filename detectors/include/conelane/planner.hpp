@@ -16,7 +16,7 @@
 ///
 ///     auto planner = conelane::make_planner({.mission = conelane::Mission::trackdrive, .laps = 10});
 ///     conelane::Plan plan = planner->update(frame, {.time_limit_ms = 20.0});
-///     if (plan.state == conelane::PlanState::lost) brake();
+///     if (plan.lane.points.empty()) brake();
 ///     else steer_along(plan.lane, plan.stop);
 namespace conelane {
 
@@ -29,8 +29,8 @@ enum class Mission { trackdrive, autocross, acceleration, skidpad };
 
 enum class PlanState {
     searching,  ///< no lane has been found yet
-    following,  ///< the lane is of this frame, or the course of the lap before, which this frame confirms
-    bridging,   ///< no lane in this frame: the rest of an earlier lane, see Plan::age_s
+    following,  ///< the lane is of this frame, or of a known course, which this frame confirms
+    bridging,   ///< this frame gives no lane to follow: the rest of an earlier lane, see Plan::age_s
     lost,       ///< no rest of an earlier lane; there is no path
     finished,   ///< the last line is crossed; the path is the stretch to come to rest on
 };
@@ -41,7 +41,7 @@ inline constexpr ConeId kNoId = std::numeric_limits<ConeId>::min();
 
 /// What the car sees, or its map, at one moment. Pose and cones are in one frame of reference, the map's.
 struct Frame {
-    double time_s = 0.0;  ///< of any clock that never goes back
+    double time_s = 0.0;  ///< of any clock that never goes back [s]
     Pose pose;
     std::vector<Cone> cones;  ///< in any order; ids other than kNoId are distinct
 };
@@ -49,11 +49,11 @@ struct Frame {
 /// What to drive.
 struct Plan {
     PlanState state = PlanState::searching;
-    /// Begins at the car. Empty if state is searching or lost, and when the car is at rest at the end.
+    /// Begins beside the car. Empty if state is searching or lost, and once the stretch to stop on is driven.
     DrivableLane lane;
     double safe_m = 0.0;  ///< trusted length of `lane`; of an earlier lane the rest of its trusted length
     double age_s = 0.0;   ///< age of the frame that the lane is from; 0 if following
-    int lap = 0;          ///< how often the start line was crossed, without the crossing at the start
+    int lap = 0;          ///< laps driven; in skidpad completed circles, in acceleration 0
     bool stop = false;    ///< the last line is crossed: come to rest before the end of `lane`
     /// Distance along `lane` to the line behind which the car has to stop; absent while that line is not on
     /// the lane, not known, or crossed.
@@ -61,7 +61,7 @@ struct Plan {
     /// Why the course of the lap before is not trusted to its end, or why the path is lost; else empty.
     std::string_view reason;
     std::string_view phase;  ///< skidpad: approach, right 1, right 2, left 1, left 2, exit; else empty
-    LaneAnswer answer;       ///< the detector's answer to this frame
+    LaneAnswer answer;       ///< the detector's, to this frame; a cone without an id has one from the planner
 };
 
 struct PlannerOptions {
@@ -83,11 +83,11 @@ class Planner {
 
     /// Throws InvalidInput if the frame is invalid or the limit is NaN; the planner then stays unchanged. A
     /// frame without cones is valid. A frame that is not later than the last one changes nothing: the last
-    /// plan is returned again, as bridging instead of following if the frame is older than the last one.
+    /// plan is returned again, as bridging instead of following unless it is the last frame again.
     [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
 
-    /// The whole course, closed, once a lap is known; absent before that, and in missions whose course is not
-    /// a circuit.
+    /// The whole course, closed, while a lap is known; absent before that, after more than 6 m without a lane
+    /// until the next lap, and in acceleration and skidpad.
     [[nodiscard]] virtual std::optional<DrivableLane> course() const = 0;
 
     /// Forgets the run.

@@ -16,7 +16,7 @@ struct ConeSet {
     std::optional<std::size_t> nearest;  ///< this many nearest cones ahead; all cones if absent
     /// The lane is searched among this many nearest cones, then cut to the cone set (see cut_to_nearest). So
     /// the last cone of the cone set is not the end of the lane, where a false cone in line would have no
-    /// rival. Has an effect only if it is larger than `nearest`.
+    /// rival. Has an effect only if `nearest` is given and smaller.
     std::optional<std::size_t> context;
 
     /// Whether lanes are cut.
@@ -30,17 +30,17 @@ struct RldDetectorOptions {
     RldParameters parameters;    ///< of the objective
     ConeSet cones;               ///< all cones by default
     double absolute_gap = 1e-9;  ///< see SolveLimits
-    bool warm_start = false;     ///< start from the previous scene's lane graph, its cones found again by id
+    bool warm_start = false;     ///< start from the last lane graph that was found, its cones found by id
     /// Values of d_near [m] to try, in this order, if no lane graph is feasible: the first cone may be
-    /// farther away than d_near, or all cones of a short view may be nearer. An answer by one of these values
-    /// claims no optimality, and its message says so. If a limit ends one of these searches, no other one
-    /// begins.
+    /// farther away than d_near, or all cones of a short view may be nearer. A lane by one of these values
+    /// claims no optimality, and its message says that another d_near was used. If a limit or an error ends
+    /// one of the searches, no other one begins.
     std::vector<double> other_d_near_m = {};
 };
 
 /// A detector by an RLD solver: the lane graph of least cost is the lane. The time limit includes making
-/// problem and program. If the cut lane has no cone on one side, the cone set is solved by itself. So status
-/// none always says that the cone set has no lane graph.
+/// problem and program. If the cut lane has no cone on one side, the cone set is solved by itself. Status
+/// none says that the cones that were solved have no lane graph, by any of the values of d_near.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_rld_detector(std::unique_ptr<RldSolver> solver,
                                                               const RldDetectorOptions& options);
 

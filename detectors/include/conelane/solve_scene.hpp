@@ -9,7 +9,7 @@ namespace conelane {
 
 /// A solved scene: its problem and the solver's report.
 struct SolvedScene {
-    LaneGraphProblem problem;  ///< empty if a limit ended its construction
+    LaneGraphProblem problem;  ///< empty if a limit or an error ended its construction
     RldReport report;          ///< build_ms includes making the problem
     double total_ms = 0.0;     ///< from the scene in memory to the report
 };
