@@ -38,12 +38,12 @@ class Answers(unittest.TestCase):
         np.testing.assert_array_equal(lane.right_points, STRAIGHT[::2])
 
     def test_the_pose_decides_what_is_left(self):
-        lane = conelane.Detector("rld-pair").detect(STRAIGHT, (16.0, 0.0, np.pi))
+        lane = conelane.Detector("rld-pair").detect(STRAIGHT, (16.0, 0.0, np.pi), time_limit_ms=None)
         self.assertEqual(lane.left.tolist(), [6, 4, 2, 0])
         np.testing.assert_allclose(lane.pose, [16.0, 0.0, np.pi])
 
     def test_the_centre_line_runs_in_the_middle(self):
-        line = conelane.Detector("front").detect(STRAIGHT, (2.0, 0.0, 0.0)).centre_line(step_m=1.0)
+        line = conelane.Detector("front").detect(STRAIGHT, (2.0, 0.0, 0.0), time_limit_ms=None).centre_line(step_m=1.0)
         self.assertEqual(line.shape, (13, 7))  # from the car to the last cones, 12 m ahead
         s, x, y, heading, curvature, left, right = line.T
         np.testing.assert_allclose(s, np.arange(13.0))

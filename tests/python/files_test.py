@@ -78,7 +78,7 @@ class Lanes(InFolder):
 
     def test_a_lane_is_read_as_it_was_written(self):
         for name in ("front", "rld-pair"):
-            lane = conelane.Detector(name).detect_scene(self.scene)
+            lane = conelane.Detector(name).detect_scene(self.scene, time_limit_ms=None)
             conelane.write_lanes(self.folder / "l.lanes.jsonl", [lane])
             again, = conelane.read_lanes(self.folder / "l.lanes.jsonl", [self.scene])
             for key in ("scene_id", "method", "status", "confidence", "trusted_m", "objective", "bound", "closed"):
@@ -166,7 +166,7 @@ class Scores(unittest.TestCase):
         self.assertEqual((good.lane_length_m, good.ground_truth_length_m, good.divergence_distance_m), (8.0, 8.0, None))
         np.testing.assert_allclose(good.lateral_error_m, 0.0, atol=1e-6)
         # The same cones without the last left one: now the false one is left of the lane.
-        astray = conelane.Detector("rld-pair").detect(np.delete(CONES, 4, axis=0), (0, 0, 0), ids=[0, 1, 2, 3, 5, 6])
+        astray = conelane.Detector("rld-pair").detect(np.delete(CONES, 4, axis=0), (0, 0, 0), ids=[0, 1, 2, 3, 5, 6], time_limit_ms=None)
         self.assertEqual(astray.ids[astray.left].tolist(), [0, 2, 6])
         bad = conelane.score(scene, astray, course)
         self.assertEqual((bad.category, bad.usable, bad.success), ("diverging_below_20", False, False))

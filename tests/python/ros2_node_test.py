@@ -26,7 +26,7 @@ def cones(time_ms, frame="base_link", ahead=0.0):
 
 class Core(unittest.TestCase):
     def setUp(self):
-        self.core = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=1000.0)
+        self.core = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=None)
 
     def level(self, messages):
         status, = messages["/diagnostics"]["status"]
@@ -57,7 +57,7 @@ class Core(unittest.TestCase):
         self.core.on_poses(TF, {"transforms": [transform]}, is_fixed=True)
         self.core.on_poses(ODOMETRY, odometry(100, 5.0))
         of_sensor = self.core.on_cones(EUFS, cones(100, "lidar", ahead=1.0), 0)
-        other = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=1000.0)
+        other = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=None)
         other.on_poses(ODOMETRY, odometry(100, 5.0))
         for one, same in zip(of_sensor["path"]["poses"], other.on_cones(EUFS, cones(100), 0)["path"]["poses"]):
             for axis in "xy":
