@@ -12,13 +12,12 @@ namespace {
 /// str or os.PathLike: a file; bytes: its content.
 std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) {
     if (py::isinstance<py::bytes>(object)) return WeightsBytes{object.cast<std::string>()};
-    PyObject* const path = PyOS_FSPath(object.ptr());
-    if (path == nullptr) {
-        PyErr_Clear();
+    try {  // a name on disk need not be UTF-8
+        const py::bytes path = py::module_::import("os").attr("fsencode")(object);
+        return std::filesystem::path(std::string(path));
+    } catch (const py::error_already_set&) {
         throw InvalidInput("weights", "is neither the path nor the bytes of a file");
     }
-    const auto text = py::reinterpret_steal<py::object>(path);
-    return std::filesystem::path(text.cast<std::string>());
 }
 
 /// The options that Python gives a detector of that name. Throws InvalidInput if the detector does not use an

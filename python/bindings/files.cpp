@@ -5,6 +5,8 @@
 #include "evaluation/world/scene_generation.hpp"
 #include "python/bindings/bindings.hpp"
 
+#include <unordered_set>
+
 #include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -20,7 +22,14 @@ std::vector<std::shared_ptr<AnnotatedScene>> shared(std::vector<AnnotatedScene>&
 
 void write_scenes(const std::filesystem::path& file, const std::vector<SceneObject>& scenes) {
     std::vector<AnnotatedScene> all;
-    for (const SceneObject& scene : scenes) all.push_back(*required(scene, "scenes"));
+    std::unordered_set<std::string> ids;
+    for (const SceneObject& scene : scenes) {
+        const auto& [id, pose, cones] = required(scene, "scenes")->scene;
+        if (cones.empty()) throw InvalidInput("scenes", "'" + id + "' has no cone, files need one");
+        if (!id.empty() && !ids.insert(id).second)
+            throw InvalidInput("scenes", "two scenes have the id '" + id + "'");
+        all.push_back(*scene);
+    }
     conelane::write_scenes(file, all);
 }
 

@@ -1,5 +1,6 @@
 """What a detector of the package takes, answers and refuses."""
 import json
+import os
 import sys
 import threading
 import time
@@ -206,6 +207,10 @@ class Refusals(unittest.TestCase):
             ("there is no detector 'fron', only " + ", ".join(conelane.methods()), lambda: conelane.Detector("fron")),
             ("there is no option 'closest', only nearest, parameters, pairing, weights",
              lambda: conelane.Detector("front", closest=3)),
+            ("there is no option 'closest'", lambda: conelane.Planner(closest=None)),
+            ("weights: \\xff.json: cannot be read", lambda: conelane.Detector("front", weights="\udcff.json")),
+            ("d_e: is not a number", lambda: conelane.Detector("rld-pair", parameters={"d_e": True})),
+            ("centre_line: must be finite numbers", lambda: conelane.speed_profile([[0.0, 0, 0, 0, np.nan, 0, 0]])),
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=0)),
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=2.5)),
             ("parameters: there is no 'd_f', only d_e", lambda: conelane.Detector("rld-pair", parameters={"d_f": 1})),
@@ -228,6 +233,12 @@ class Refusals(unittest.TestCase):
             with self.subTest(message), self.assertRaises(ValueError) as raised:
                 call()
             self.assertIn(message, str(raised.exception))
+
+    def test_none_is_no_scene_and_no_lane(self):
+        for call in (lambda: conelane.Detector("clc").detect_scene(None), lambda: conelane.write_scenes("none", [None]),
+                     lambda: conelane.read_lanes(os.devnull, [None]), lambda: conelane.write_lanes("none", [None])):
+            with self.assertRaisesRegex(TypeError, "must not be None"):
+                call()
 
     def test_a_detector_goes_on_after_an_error(self):
         detector = conelane.Detector("front-warm")

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import conelane
+from conelane import frames, replay
 
 CONES = [[0, 1.5], [0, -1.5], [4, 1.5], [4, -1.5], [8, 1.5], [8, -1.5], [8, 5.0]]
 TRUTH = ([0, 2, 4], [1, 3, 5])
@@ -66,6 +67,14 @@ class Scenes(InFolder):
         with self.assertRaisesRegex(ValueError, r"ground_truth.left\[1\]: 7 is not an index of the 7 cones"):
             conelane.Scene(CONES, (0, 0, 0), ground_truth=([0, 7], [1]))
 
+    def test_what_could_not_be_read_is_not_written(self):
+        for message, make in (("cone id 0 is there twice", lambda: [conelane.Scene(CONES, (0, 0, 0), ground_truth=([0], [0, 1]))]),
+                              (r"ground_truth.left: has shape \(1, 2\)", lambda: [conelane.Scene(CONES, (0, 0, 0), ground_truth=([[0, 2]], [1]))]),
+                              ("has no cone", lambda: [conelane.Scene([], (0, 0, 0))]),
+                              ("two scenes have the id 'a'", lambda: [conelane.Scene(CONES, (0, 0, 0), id="a")] * 2)):
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                conelane.write_scenes(self.folder / "s.scenes.jsonl", make())
+
     def test_a_scene_is_checked_at_once(self):
         with self.assertRaisesRegex(ValueError, r"cones\[0\]\.x: must be a finite number"):
             conelane.Scene([[np.nan, 0]], (0, 0, 0))
@@ -109,6 +118,28 @@ class Lanes(InFolder):
                               ("{}\n", r"l\.lanes\.jsonl:1: ")):
             with self.subTest(text), self.assertRaisesRegex(ValueError, message):
                 conelane.read_lanes(self.write("l.lanes.jsonl", text), [self.scene])
+
+
+class Frames(InFolder):
+    def test_what_some_cones_have_is_read(self):
+        file = self.write("r.frames.jsonl", '{"pose": {"x": 0, "y": 0, "yaw": 0}, "time_s": 1, "reset": false, "cones": [{"x": 1, "y": 1, "id": 7, '
+                          '"confidence": 0.5, "position_covariance": [[0.1, 0], [0, 0.2]], "color_probabilities": [0, 0.6, 0.4, 0, 0]}, '
+                          '{"x": 2, "y": 1, "color": "yellow"}]}\n{"reset": true}\n')
+        frame, again = frames.read_frames(file)
+        self.assertIsNone(again)
+        frames.write_frames(self.folder / "w.frames.jsonl", [frame])
+        for one in (frame, next(frames.read_frames(self.folder / "w.frames.jsonl"))):
+            self.assertEqual((one.ids.tolist(), one.confidences.tolist()), ([7, conelane.NO_ID], [0.5, 1.0]))
+            self.assertEqual(one.covariances.tolist(), [[[0.1, 0], [0, 0.2]], [[0, 0], [0, 0]]])
+            self.assertEqual(one.colors.tolist(), [[0, 0.6, 0.4, 0, 0], [0, 0, 1, 0, 0]])
+            conelane.Planner().update(**one._asdict())
+
+    def test_faults(self):
+        for text in ('{"reset": "no"}', "{", '[1]', '[{"car_position": [0, 0], "car_direction": [1, 0]}]', '{"time_s": "now"}', '{"cones": [1]}'):
+            with self.subTest(text), self.assertRaisesRegex(ValueError, r"r\.frames\.jsonl(:1)?: "):
+                list(frames.read_frames(self.write("r.frames.jsonl", text)))
+        with self.assertRaisesRegex(ValueError, "holds no frame"):
+            replay.replay([None], conelane.Planner())
 
 
 class Tracks(InFolder):
@@ -210,9 +241,10 @@ class Rld(unittest.TestCase):
         heavy = conelane.solve_rld(CONES, (0, 0, 0), parameters={"w_b": 2.0})
         default = conelane.solve_rld(CONES, (0, 0, 0))
         self.assertAlmostEqual(heavy.objective, default.objective - 4.0)  # four edges, each worth 1 more
-        everything = conelane.rld_parameters("context")
-        same = [conelane.solve_rld(CONES, (0, 0, 0), parameters=p).objective for p in ("context", everything)]
-        self.assertEqual(same[0], same[1])
+        for name in ("context", "learned"):
+            same = [conelane.solve_rld(CONES, (0, 0, 0), parameters=p).objective for p in (name, conelane.rld_parameters(name))]
+            self.assertEqual(same[0], same[1])
+            self.assertNotEqual(same[0], default.objective)
 
     def test_faults(self):
         for message, options in (("there is no solver 'cbc', only path-pair, exhaustive", {"solver": "cbc"}),

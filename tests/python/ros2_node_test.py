@@ -63,8 +63,17 @@ class Core(unittest.TestCase):
             for axis in "xy":
                 self.assertAlmostEqual(one["pose"]["position"][axis], same["pose"]["position"][axis], places=9)
 
+    def test_a_pose_in_another_frame_replaces_those_before(self):
+        self.core.on_poses(TF, {"transforms": [{"header": header(0, "odom"), "child_frame_id": "base_link", "transform": {
+            "translation": {"x": 50.0, "y": 0.0, "z": 0.0}, "rotation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}}]})
+        self.core.on_poses(ODOMETRY, {**odometry(100, 5.0), "header": header(100, "map")})
+        messages = self.core.on_cones(EUFS, cones(60), 0)
+        self.assertEqual(messages["path"]["header"]["frame_id"], "map")
+        self.assertAlmostEqual(messages["path"]["poses"][0]["pose"]["position"]["x"], 3.0, delta=0.1)
+
     def test_what_is_wrong_is_a_diagnostic(self):
         self.assertEqual(self.level(self.core.on_cones("my_msgs/msg/Blob", {}, 7))[0], b"\x02")
+        self.assertIn("pose of 'base_link'", self.level(self.core.on_poses(ODOMETRY, odometry(0, math.nan)))[1])
         self.core.on_poses(ODOMETRY, odometry(0, 0.0))
         self.assertEqual(self.core.on_cones(EUFS, cones(700), 0), {})
         messages = self.core.on_cones(EUFS, cones(800), 0)  # the first ones never got a pose
