@@ -219,6 +219,9 @@ class MessageFrames:
         rotation = cones_frame[:2, :2]
         places = positions @ rotation.T + cones_frame[:2, 3]
         kept = np.isfinite(places).all(axis=1)
+        for column in (confidences, covariances):  # one cone that the planner refuses would cost the frame
+            if column is not None:
+                kept &= np.isfinite(column).all(axis=tuple(range(1, column.ndim)))
         if ids is not None and len(np.unique(ids[kept])) != kept.sum():
             ids = None
         spread = None if covariances is None else (rotation @ covariances @ rotation.T)[kept]

@@ -71,6 +71,12 @@ class Core(unittest.TestCase):
         self.assertEqual(messages["path"]["header"]["frame_id"], "map")
         self.assertAlmostEqual(messages["path"]["poses"][0]["pose"]["position"]["x"], 3.0, delta=0.1)
 
+    def test_a_cone_without_a_number_is_left_out(self):
+        message = cones(0)
+        message["blue_cones"][1]["covariance"] = [math.nan, 0.0, 0.0, 1.0]
+        self.core.on_poses(ODOMETRY, odometry(0, 5.0))
+        self.assertEqual(self.level(self.core.on_cones(EUFS, message, 0)), (b"\x00", "following"))
+
     def test_what_is_wrong_is_a_diagnostic(self):
         self.assertEqual(self.level(self.core.on_cones("my_msgs/msg/Blob", {}, 7))[0], b"\x02")
         self.assertIn("pose of 'base_link'", self.level(self.core.on_poses(ODOMETRY, odometry(0, math.nan)))[1])
