@@ -44,7 +44,7 @@ class NodeCore:
         self._waiting = None
         try:
             sighting = self._maker.sighting(type_name, message, received_ns)
-        except ValueError as error:
+        except (KeyError, TypeError, ValueError) as error:  # a mapping may name a field that is no number
             return {"/diagnostics": _diagnostics(received_ns, _ERROR, str(error), {})}
         return self._answer(sighting, is_last=False) or given_up
 

@@ -287,8 +287,8 @@ class Bags(unittest.TestCase):
         self.assertFalse(re.search(r'(src|href)="(?!data:)', text))
         if PROGRAM:
             self.assertEqual(bags.main([str(self.folder / "run.bag"), "--out", str(file)]), 0)
-            subprocess.run([PROGRAM, "drive", "--follow", file, "--out", self.folder / "p.jsonl", "--page", self.folder / "p.html",
-                            "--time-limit", "inf"], check=True)
+            subprocess.run([PROGRAM, "drive", "--follow", file, "--out", self.folder / "p.jsonl", "--page", self.folder / "p.html", "--time-limit", "inf"],
+                           check=True)
             text = replay.replay(bags.read_bag(self.folder / "run.bag").frames, conelane.Planner(), time_limit_ms=None)
             states = [[one["state"] for one in json.loads(of.split('id="race-data">')[1].split("</script>")[0])["frames"]]
                       for of in (text, (self.folder / "p.html").read_text(encoding="utf-8"))]

@@ -1,6 +1,5 @@
 """What a detector of the package takes, answers and refuses."""
 import json
-import os
 import sys
 import threading
 import time
@@ -236,7 +235,7 @@ class Refusals(unittest.TestCase):
 
     def test_none_is_no_scene_and_no_lane(self):
         for call in (lambda: conelane.Detector("clc").detect_scene(None), lambda: conelane.write_scenes("none", [None]),
-                     lambda: conelane.read_lanes(os.devnull, [None]), lambda: conelane.write_lanes("none", [None])):
+                     lambda: conelane.read_lanes("none", [None]), lambda: conelane.write_lanes("none", [None])):
             with self.assertRaisesRegex(TypeError, "must not be None"):
                 call()
 

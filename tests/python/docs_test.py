@@ -23,18 +23,9 @@ import conelane.replay
 
 SOURCES = Path(sys.argv.pop(1)) if len(sys.argv) > 1 else Path(__file__).parents[2]
 
-
-def without_limit(call):
-    """A pause of the machine breaks no example."""
-    @functools.wraps(call)
-    def unlimited(*given, **options):
-        return call(*given, **{**options, "time_limit_ms": None})
-
-    return unlimited
-
-
-for of, name in ((conelane.Detector, "detect"), (conelane.Detector, "detect_scene"), (conelane.Planner, "update")):
-    setattr(of, name, without_limit(getattr(of, name)))
+for of, method in ((conelane.Detector, "detect"), (conelane.Detector, "detect_scene"), (conelane.Planner, "update")):
+    call = getattr(of, method)  # without a limit: a pause of the machine breaks no example
+    setattr(of, method, functools.wraps(call)(lambda *given, call=call, **more: call(*given, **{**more, "time_limit_ms": None})))
 
 
 def documented(thing, name):
