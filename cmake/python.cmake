@@ -29,7 +29,7 @@ elseif(CONELANE_PYTHON)
     set(libraries "pybind11 2.9 pybind11-dev")
     if(CONELANE_PYTHON_FILES)
         list(APPEND libraries "Boost 1.74 libboost-dev" "nlohmann_json 3.11 nlohmann-json3-dev" "yaml-cpp 0.7 libyaml-cpp-dev"
-                              "fmt 9 libfmt-dev" "TBB 2021 libtbb-dev")
+                              "fmt 9 libfmt-dev" "ZLIB 1.2 zlib1g-dev")
     endif()
     foreach(library IN LISTS libraries)
         string(REPLACE " " ";" library ${library})

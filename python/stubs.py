@@ -33,7 +33,7 @@ def of_class(name, of):
             text += f"    @property\n    def {key}(self) -> {member.__doc__.partition(':')[0]}: ...\n"
         elif not key.startswith("_"):
             text += function(member.__doc__, "    ")
-    return text
+    return text if "def" in text else text + "    ...\n"
 
 
 def main(module_file, out):

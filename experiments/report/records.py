@@ -8,7 +8,7 @@ import sys
 NUMBER, WHOLE, TEXT, YES_OR_NO = (int, float), (int,), (str,), (bool,)
 
 
-class InputError(Exception):
+class InputError(ValueError):
     """Names the file and, where there is one, the line and the key."""
 
 

@@ -7,7 +7,7 @@ import pkgutil
 from collections import Counter
 from html import escape
 
-from .records import read_json, read_lines, run
+from .records import NUMBER, YES_OR_NO, InputError, read_json, read_lines, require, run
 
 _EVERY = 2  # points of a path that are drawn, 0.5 m apart
 _AHEAD_M = 20.0
@@ -52,21 +52,28 @@ def player(race, note):
 
 def frame_lines(path, interval_s):
     """(number, frame) as `conelane drive --follow` counts and reads them, those of ft-fsd in conelane's own form, all with `time_s`. A
-    frame may be {"reset": true}."""
+    frame may be {"reset": true}. Raises InputError, naming file and number."""
     with open(path, encoding="utf-8", errors="replace") as stream:
         is_list = stream.read(4096).lstrip().startswith("[")
     time_s = None
     for number, line in enumerate(read_json(path, list), 1) if is_list else read_lines(path):
-        if line.get("reset"):
+        if not isinstance(line, dict):
+            raise InputError(f"{path}:{number}: no JSON object")
+        if "reset" in line and require(path, number, line, "reset", YES_OR_NO):
             time_s = None
             yield number, {"reset": True}
             continue
+        line.pop("reset", None)
         time_s = line.get("time_s", 0.0 if time_s is None else time_s + interval_s)
+        require(path, number, {"time_s": time_s}, "time_s", NUMBER)
         if "car_position" in line:
             colors = ("unknown", "yellow", "blue", "orange", "orange")
-            cones = [{"x": x, "y": y, "color": color} for color, places in zip(colors, line["slam_cones"]) for x, y in places]
-            (x, y), (ahead, left) = line["car_position"], line["car_direction"]
-            line = {"pose": {"x": x, "y": y, "yaw": math.atan2(left, ahead)}, "cones": cones}
+            try:
+                cones = [{"x": x, "y": y, "color": color} for color, places in zip(colors, line["slam_cones"]) for x, y in places]
+                (x, y), (ahead, left) = line["car_position"], line["car_direction"]
+                line = {"pose": {"x": x, "y": y, "yaw": math.atan2(left, ahead)}, "cones": cones}
+            except (KeyError, TypeError, ValueError) as error:
+                raise InputError(f"{path}:{number}: {error}: is missing or invalid") from None
         yield number, {**line, "time_s": time_s}
 
 

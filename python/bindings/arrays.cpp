@@ -154,7 +154,10 @@ void set_parameter(RldParameters& parameters, const std::string& key, py::handle
         (key == "use_confidence" ? parameters.use_confidence : parameters.forbid_crossing) =
             value.cast<bool>();
     } else if (key == "learned_costs") {
-        parameters.learned_costs = read_learned_costs(std::string(py::str(value)));
+        if (py::isinstance<LearnedCosts>(value))
+            parameters.learned_costs = value.cast<std::shared_ptr<LearnedCosts>>();
+        else
+            parameters.learned_costs = read_learned_costs(std::string(py::str(value)));
     } else {
         throw InvalidInput("parameters", "there is no '" + key + "', only " + parameter_keys());
     }
@@ -187,7 +190,7 @@ Numbers numbers(py::handle object, const char* key) {
 
 double number(py::handle object, const std::string& key) {
     const double value = PyFloat_AsDouble(object.ptr());
-    if (value == -1.0 && PyErr_Occurred() != nullptr) {
+    if (py::isinstance<py::bool_>(object) || (value == -1.0 && PyErr_Occurred() != nullptr)) {
         PyErr_Clear();
         throw InvalidInput(key, "is not a number");
     }
@@ -238,7 +241,9 @@ std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors,
 }
 
 std::vector<ConeId> ids_at(py::handle indices, std::span<const Cone> cones, const char* key) {
-    const auto values = whole_numbers(any_array(indices, key), key);
+    const py::array given = any_array(indices, key);
+    if (given.ndim() != 1) throw InvalidInput(key, "has shape " + shape_of(given) + ", not (N,)");
+    const auto values = whole_numbers(given, key);
     std::vector<ConeId> ids;
     for (py::ssize_t i = 0; i < values.size(); ++i) {
         const std::int64_t index = values.data()[i];

@@ -67,6 +67,13 @@ struct LaneObject {
     std::shared_ptr<const Scene> scene;
 };
 
+/// A pointer that Python gave, which is null for None. Throws TypeError, naming the argument.
+template <typename Pointer>
+const Pointer& required(const Pointer& pointer, const char* key) {
+    if (!pointer) throw py::type_error(std::string(key) + ": must not be None");
+    return pointer;
+}
+
 /// The arguments of a function, by the first paragraph of its docstring, as Python has them behind `def`.
 struct Signature {
     struct Argument {

@@ -12,13 +12,12 @@ namespace {
 /// str or os.PathLike: a file; bytes: its content.
 std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) {
     if (py::isinstance<py::bytes>(object)) return WeightsBytes{object.cast<std::string>()};
-    PyObject* const path = PyOS_FSPath(object.ptr());
-    if (path == nullptr) {
-        PyErr_Clear();
+    try {  // a name on disk need not be UTF-8
+        const py::bytes path = py::module_::import("os").attr("fsencode")(object);
+        return std::filesystem::path(std::string(path));
+    } catch (const py::error_already_set&) {
         throw InvalidInput("weights", "is neither the path nor the bytes of a file");
     }
-    const auto text = py::reinterpret_steal<py::object>(path);
-    return std::filesystem::path(text.cast<std::string>());
 }
 
 /// The options that Python gives a detector of that name. Throws InvalidInput if the detector does not use an
@@ -28,6 +27,11 @@ DetectorOptions detector_options(const std::string& name, const py::kwargs& give
     DetectorOptions options;
     for (const auto& [key_object, value] : given) {
         const std::string key = py::str(key_object);
+        constexpr std::array<std::string_view, 4> kOptions{"nearest", "parameters", "pairing", "weights"};
+        if (std::ranges::find(kOptions, key) == kOptions.end()) {
+            throw InvalidInput(
+                "options", "there is no option '" + key + "', only nearest, parameters, pairing, weights");
+        }
         if (value.is_none()) continue;
         if (key == "nearest") {
             options.nearest = positive_count(value, "nearest");
@@ -35,11 +39,8 @@ DetectorOptions detector_options(const std::string& name, const py::kwargs& give
             options.rld_parameters = rld_parameters(value);
         } else if (key == "pairing") {
             options.pairing = pairing_of(std::string(py::str(value)));
-        } else if (key == "weights") {
-            options.weights = weights_of(value);
         } else {
-            throw InvalidInput(
-                "options", "there is no option '" + key + "', only nearest, parameters, pairing, weights");
+            options.weights = weights_of(value);
         }
         if (recipe == nullptr || key == "nearest") continue;
         if (key == "weights") {
@@ -121,7 +122,7 @@ LaneObject detect(DetectorObject& detector, const py::object& cones, const py::o
 
 LaneObject detect_scene(DetectorObject& detector, const SceneObject& scene,
                         std::optional<double> time_limit_ms) {
-    return detector.detect({scene, &scene->scene}, time_limit_ms);
+    return detector.detect({scene, &required(scene, "scene")->scene}, time_limit_ms);
 }
 
 py::dict methods() {
@@ -288,6 +289,8 @@ py::array_t<double> speeds(const py::object& centre_line, double v_now, std::opt
     DrivableLane path;
     for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
         path.points.push_back({.s_m = rows.at(i, 0), .curvature_1pm = rows.at(i, 4)});
+        if (!std::isfinite(rows.at(i, 0) + rows.at(i, 4)))
+            throw InvalidInput("centre_line", "must be finite numbers");
         if (i > 0 && !(rows.at(i, 0) > rows.at(i - 1, 0)))
             throw InvalidInput("centre_line", "its first column must increase");
     }

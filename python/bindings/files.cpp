@@ -5,6 +5,8 @@
 #include "evaluation/world/scene_generation.hpp"
 #include "python/bindings/bindings.hpp"
 
+#include <unordered_set>
+
 #include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -20,7 +22,14 @@ std::vector<std::shared_ptr<AnnotatedScene>> shared(std::vector<AnnotatedScene>&
 
 void write_scenes(const std::filesystem::path& file, const std::vector<SceneObject>& scenes) {
     std::vector<AnnotatedScene> all;
-    for (const SceneObject& scene : scenes) all.push_back(*scene);
+    std::unordered_set<std::string> ids;
+    for (const SceneObject& scene : scenes) {
+        const auto& [id, pose, cones] = required(scene, "scenes")->scene;
+        if (cones.empty()) throw InvalidInput("scenes", "'" + id + "' has no cone, files need one");
+        if (!id.empty() && !ids.insert(id).second)
+            throw InvalidInput("scenes", "two scenes have the id '" + id + "'");
+        all.push_back(*scene);
+    }
     conelane::write_scenes(file, all);
 }
 
@@ -65,7 +74,11 @@ std::vector<Track> load_tracks_warning(const std::string& spec) {
 std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
                                    const std::vector<SceneObject>& scenes) {
     std::unordered_map<std::string, SceneObject> scene_of;  // for look-up only
-    for (const SceneObject& scene : scenes) scene_of.emplace(scene->scene.id, scene);
+    for (const SceneObject& scene : scenes) {
+        const std::string& id = required(scene, "scenes")->scene.id;
+        if (scene_of.emplace(id, scene).first->second != scene)
+            throw InvalidInput("scenes", "two scenes have the id '" + id + "'");
+    }
     std::vector<LaneObject> lanes;
     for (LaneRecord& record : conelane::read_lanes(file)) {
         const auto found = scene_of.find(record.scene);
@@ -84,7 +97,7 @@ std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
 
 void write_lanes(const std::filesystem::path& file, const std::vector<const LaneObject*>& lanes) {
     std::vector<LaneRecord> records;
-    for (const LaneObject* lane : lanes) records.push_back(lane->record);
+    for (const LaneObject* lane : lanes) records.push_back(required(lane, "lanes")->record);
     conelane::write_lanes(file, records);
 }
 

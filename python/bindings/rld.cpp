@@ -1,5 +1,6 @@
 #include "conelane/core_solvers.hpp"
 #include "conelane/invalid_input.hpp"
+#include "conelane/learned_costs.hpp"
 #include "conelane/solve_scene.hpp"
 #include "python/bindings/bindings.hpp"
 
@@ -64,6 +65,8 @@ py::dict parameters_as_dict(const std::string& name) {
     all["pairing"] = to_string(parameters.pairing);
     all["use_confidence"] = parameters.use_confidence;
     all["forbid_crossing"] = parameters.forbid_crossing;
+    if (parameters.learned_costs)
+        all["learned_costs"] = std::const_pointer_cast<LearnedCosts>(parameters.learned_costs);
     return all;
 }
 
@@ -99,7 +102,8 @@ constexpr const char* kRldParameters = R"(rld_parameters(name: str = 'default') 
 Parameters of the RLD model.
 
 name: "default" or one of the tuned sets; an unknown name lists them.
-Returns lengths in metres, angles in radians; without the learned costs that belong to the set "learned".
+Returns lengths in metres, angles in radians. Where the set has learned costs, `learned_costs` is a `LearnedCosts`; a
+    file that ``conelane train rld`` wrote may stand in its place.
 
 >>> import conelane
 >>> conelane.rld_parameters()["d_max"]
@@ -113,6 +117,8 @@ ValueError: parameters: there is no set 'tuned', only default, n12, context, sha
 }  // namespace
 
 void add_rld(py::module_& module) {
+    Class<LearnedCosts, std::shared_ptr<LearnedCosts>>(module, "LearnedCosts",
+                                                       "Costs of a set of `rld_parameters`.");
     Class<SolutionObject>(module, "RldSolution", "What `solve_rld` found. Every attribute is a copy.")
         .get(
             "status",

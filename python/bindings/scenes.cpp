@@ -1,5 +1,7 @@
+#include "conelane/invalid_input.hpp"
 #include "python/bindings/bindings.hpp"
 
+#include <unordered_set>
 #include <utility>
 
 namespace conelane::python {
@@ -20,6 +22,13 @@ std::shared_ptr<AnnotatedScene> make_scene(const py::object& cones, const py::ob
         scene->ground_truth =
             Lane{ids_at(ground_truth->first, scene->scene.cones, "ground_truth.left"),
                  ids_at(ground_truth->second, scene->scene.cones, "ground_truth.right"), closed};
+        std::unordered_set<ConeId> once;  // as files have it
+        for (const auto* side : {&scene->ground_truth->left, &scene->ground_truth->right}) {
+            for (const ConeId cone : *side) {
+                if (!once.insert(cone).second)
+                    throw InvalidInput("ground_truth", "cone id " + std::to_string(cone) + " is there twice");
+            }
+        }
     }
     return scene;
 }

@@ -15,7 +15,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, NamedTuple, Op
 import numpy as np
 from numpy.typing import NDArray
 
-from . import Color
+from . import NO_ID, Color
 from .messages import READERS, Cones, Fields, _field, _has
 from .page.replay import frame_lines
 
@@ -184,7 +184,9 @@ class MessageFrames:
         if not all(map(math.isfinite, values)) or not any(values[3:]):
             raise ValueError(f"pose of '{child}': must be finite, and its quaternion not 0")
         parent = _field(message, "header.frame_id").lstrip("/")
-        edge = self._edges.setdefault(child, _Edge(parent, [], is_fixed))
+        edge = self._edges.get(child)
+        if edge is None or edge.parent != parent:  # what lay in another frame is no longer of use
+            edge = self._edges[child] = _Edge(parent, [], is_fixed)
         insort(edge.samples, (_stamp_ns(message), values))
         if self._most is not None and len(edge.samples) > 2 * self._most:
             del edge.samples[:-self._most]
@@ -217,6 +219,9 @@ class MessageFrames:
         rotation = cones_frame[:2, :2]
         places = positions @ rotation.T + cones_frame[:2, 3]
         kept = np.isfinite(places).all(axis=1)
+        for column in (confidences, covariances):  # one cone that the planner refuses would cost the frame
+            if column is not None:
+                kept &= np.isfinite(column).all(axis=tuple(range(1, column.ndim)))
         if ids is not None and len(np.unique(ids[kept])) != kept.sum():
             ids = None
         spread = None if covariances is None else (rotation @ covariances @ rotation.T)[kept]
@@ -279,7 +284,8 @@ def _as_line(frame: Frame) -> str:
     for key, values in columns:
         if values is not None:
             for cone, value in zip(cones, values.tolist()):
-                cone[key] = value
+                if key != "id" or value != NO_ID:
+                    cone[key] = value
     return json.dumps({"time_s": frame.time_s, "pose": {"x": x, "y": y, "yaw": yaw}, "cones": cones}, separators=(",", ":"))
 
 
@@ -297,6 +303,14 @@ def write_frames(file: Union[str, "os.PathLike[str]"], frames: Iterable[Frame]) 
     return count
 
 
+def _column(cones: List[Dict[str, Any]], key: str, absent: Any) -> Optional[NDArray[Any]]:
+    """What cones have for a key, and what stands for it in those without; None where no cone has it."""
+    values = [cone.get(key) for cone in cones]
+    if all(value is None for value in values):
+        return None
+    return np.array([other if value is None else value for value, other in zip(values, absent)])
+
+
 def read_frames(file: Union[str, "os.PathLike[str]"], interval_s: float = 0.1) -> Iterator[Optional[Frame]]:
     """The frames of a file, as `conelane drive --follow` reads it; None where another run begins.
 
@@ -308,15 +322,12 @@ def read_frames(file: Union[str, "os.PathLike[str]"], interval_s: float = 0.1) -
             yield None
             continue
         try:
-            cones = line["cones"]
-            columns = {name: [cone.get(key) for cone in cones] for name, key in (
-                ("ids", "id"), ("confidences", "confidence"), ("covariances", "position_covariance"),
-                ("colors", "color_probabilities"), ("labels", "color"))}
-            labels = columns.pop("labels")
-            given = {name: np.array(values) for name, values in columns.items() if cones and None not in values}
-            given.setdefault("colors", np.array([Color[label or "unknown"] for label in labels], dtype=np.uint8))
-            pose = line["pose"]
+            cones, pose = line["cones"], line["pose"]
+            labels = np.array([Color[cone.get("color") or "unknown"] for cone in cones], dtype=np.uint8)
+            columns = [_column(cones, key, [absent] * len(cones)) for key, absent in (
+                ("id", NO_ID), ("confidence", 1.0), ("position_covariance", np.zeros((2, 2))))]
+            colors = _column(cones, "color_probabilities", np.eye(len(Color))[labels])
             yield Frame(np.array([(cone["x"], cone["y"]) for cone in cones], dtype=np.float64).reshape(-1, 2),
-                        (pose["x"], pose["y"], pose["yaw"]), line["time_s"], **given)
-        except (KeyError, TypeError, ValueError) as error:
+                        (pose["x"], pose["y"], pose["yaw"]), line["time_s"], columns[0], labels if colors is None else colors, *columns[1:])
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
             raise ValueError(f"{file}:{number}: {error}: is missing or invalid") from None

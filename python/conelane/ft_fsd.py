@@ -179,7 +179,7 @@ class PathPlanner:
     laps: Of trackdrive, by default 10, and of autocross, by default 1.
     path_length_m: Length of the path [m]; shorter if the lane ends before.
     points: M, rows of the path.
-    time_limit_ms: Of each call [ms].
+    time_limit_ms: Of each call [ms]; None for no limit.
     max_path_age: For at most this many calls without a lane, `interval_s` apart, the last path is returned; 0 for none.
     interval_s: Time between calls that give no `time_s` [s].
     frame: In which frame cones and pose are given. By default recognised: in the car's frame, the cones move as the
@@ -234,7 +234,7 @@ class PathPlanner:
 
     def __init__(self, mission: MissionTypes, experimental_performance_improvements: bool = False, *,
                  detector: str = "front-warm", laps: Optional[int] = None, path_length_m: float = 20.0, points: int = 40,
-                 time_limit_ms: float = 50.0, max_path_age: int = 5, interval_s: float = 0.1,
+                 time_limit_ms: Optional[float] = 50.0, max_path_age: int = 5, interval_s: float = 0.1,
                  frame: Optional[str] = None) -> None:
         if frame not in (None, "map", "car"):
             raise ValueError(f"frame: is '{frame}', not 'map', 'car' or None")

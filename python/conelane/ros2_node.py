@@ -25,14 +25,17 @@ _WARN, _ERROR = b"\x01", b"\x02"
 class NodeCore:
     """Messages in, messages out. Those that go out are dicts by their topics."""
 
-    def __init__(self, planner: Planner, mapping: Mapping = Mapping(), time_limit_ms: float = 20.0) -> None:
+    def __init__(self, planner: Planner, mapping: Mapping = Mapping(), time_limit_ms: Optional[float] = 20.0) -> None:
         self._planner, self._time_limit_ms = planner, time_limit_ms
         self._maker = MessageFrames(mapping, _MOST_POSES)
         self._waiting: Optional[_Sighting] = None  # for a pose
 
     def on_poses(self, type_name: str, message: Any, is_fixed: bool = False) -> Dict[str, Any]:
         """What is to be published: cones may have waited for this pose."""
-        self._maker.add_poses(type_name, message, is_fixed)
+        try:
+            self._maker.add_poses(type_name, message, is_fixed)
+        except ValueError as error:  # no end of the run: the next pose may be one
+            return {"/diagnostics": _diagnostics(0, _ERROR, str(error), {})}
         return self._answer(self._waiting, is_last=False)
 
     def on_cones(self, type_name: str, message: Any, received_ns: int) -> Dict[str, Any]:
@@ -41,7 +44,7 @@ class NodeCore:
         self._waiting = None
         try:
             sighting = self._maker.sighting(type_name, message, received_ns)
-        except ValueError as error:
+        except (KeyError, TypeError, ValueError) as error:  # a mapping may name a field that is no number
             return {"/diagnostics": _diagnostics(received_ns, _ERROR, str(error), {})}
         return self._answer(sighting, is_last=False) or given_up
 

@@ -27,7 +27,7 @@ except ImportError as missing:
     sys.exit(77)
 
 import conelane
-from conelane import bags, frames
+from conelane import bags, frames, replay
 from conelane.messages import to_eufs, to_fs_track, to_pacsim
 
 PROGRAM = os.environ.get("CONELANE_PROGRAM")
@@ -287,7 +287,9 @@ class Bags(unittest.TestCase):
         self.assertFalse(re.search(r'(src|href)="(?!data:)', text))
         if PROGRAM:
             self.assertEqual(bags.main([str(self.folder / "run.bag"), "--out", str(file)]), 0)
-            subprocess.run([PROGRAM, "drive", "--follow", file, "--out", self.folder / "p.jsonl", "--page", self.folder / "p.html"], check=True)
+            subprocess.run([PROGRAM, "drive", "--follow", file, "--out", self.folder / "p.jsonl", "--page", self.folder / "p.html", "--time-limit", "inf"],
+                           check=True)
+            text = replay.replay(bags.read_bag(self.folder / "run.bag").frames, conelane.Planner(), time_limit_ms=None)
             states = [[one["state"] for one in json.loads(of.split('id="race-data">')[1].split("</script>")[0])["frames"]]
                       for of in (text, (self.folder / "p.html").read_text(encoding="utf-8"))]
             self.assertEqual(states[0], states[1])

@@ -38,12 +38,12 @@ class Answers(unittest.TestCase):
         np.testing.assert_array_equal(lane.right_points, STRAIGHT[::2])
 
     def test_the_pose_decides_what_is_left(self):
-        lane = conelane.Detector("rld-pair").detect(STRAIGHT, (16.0, 0.0, np.pi))
+        lane = conelane.Detector("rld-pair").detect(STRAIGHT, (16.0, 0.0, np.pi), time_limit_ms=None)
         self.assertEqual(lane.left.tolist(), [6, 4, 2, 0])
         np.testing.assert_allclose(lane.pose, [16.0, 0.0, np.pi])
 
     def test_the_centre_line_runs_in_the_middle(self):
-        line = conelane.Detector("front").detect(STRAIGHT, (2.0, 0.0, 0.0)).centre_line(step_m=1.0)
+        line = conelane.Detector("front").detect(STRAIGHT, (2.0, 0.0, 0.0), time_limit_ms=None).centre_line(step_m=1.0)
         self.assertEqual(line.shape, (13, 7))  # from the car to the last cones, 12 m ahead
         s, x, y, heading, curvature, left, right = line.T
         np.testing.assert_allclose(s, np.arange(13.0))
@@ -206,6 +206,10 @@ class Refusals(unittest.TestCase):
             ("there is no detector 'fron', only " + ", ".join(conelane.methods()), lambda: conelane.Detector("fron")),
             ("there is no option 'closest', only nearest, parameters, pairing, weights",
              lambda: conelane.Detector("front", closest=3)),
+            ("there is no option 'closest'", lambda: conelane.Planner(closest=None)),
+            ("weights: \\xff.json: cannot be read", lambda: conelane.Detector("front", weights="\udcff.json")),
+            ("d_e: is not a number", lambda: conelane.Detector("rld-pair", parameters={"d_e": True})),
+            ("centre_line: must be finite numbers", lambda: conelane.speed_profile([[0.0, 0, 0, 0, np.nan, 0, 0]])),
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=0)),
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=2.5)),
             ("parameters: there is no 'd_f', only d_e", lambda: conelane.Detector("rld-pair", parameters={"d_f": 1})),
@@ -228,6 +232,12 @@ class Refusals(unittest.TestCase):
             with self.subTest(message), self.assertRaises(ValueError) as raised:
                 call()
             self.assertIn(message, str(raised.exception))
+
+    def test_none_is_no_scene_and_no_lane(self):
+        for call in (lambda: conelane.Detector("clc").detect_scene(None), lambda: conelane.write_scenes("none", [None]),
+                     lambda: conelane.read_lanes("none", [None]), lambda: conelane.write_lanes("none", [None])):
+            with self.assertRaisesRegex(TypeError, "must not be None"):
+                call()
 
     def test_a_detector_goes_on_after_an_error(self):
         detector = conelane.Detector("front-warm")

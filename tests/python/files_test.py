@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import conelane
+from conelane import frames, replay
 
 CONES = [[0, 1.5], [0, -1.5], [4, 1.5], [4, -1.5], [8, 1.5], [8, -1.5], [8, 5.0]]
 TRUTH = ([0, 2, 4], [1, 3, 5])
@@ -66,6 +67,14 @@ class Scenes(InFolder):
         with self.assertRaisesRegex(ValueError, r"ground_truth.left\[1\]: 7 is not an index of the 7 cones"):
             conelane.Scene(CONES, (0, 0, 0), ground_truth=([0, 7], [1]))
 
+    def test_what_could_not_be_read_is_not_written(self):
+        for message, make in (("cone id 0 is there twice", lambda: [conelane.Scene(CONES, (0, 0, 0), ground_truth=([0], [0, 1]))]),
+                              (r"ground_truth.left: has shape \(1, 2\)", lambda: [conelane.Scene(CONES, (0, 0, 0), ground_truth=([[0, 2]], [1]))]),
+                              ("has no cone", lambda: [conelane.Scene([], (0, 0, 0))]),
+                              ("two scenes have the id 'a'", lambda: [conelane.Scene(CONES, (0, 0, 0), id="a")] * 2)):
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                conelane.write_scenes(self.folder / "s.scenes.jsonl", make())
+
     def test_a_scene_is_checked_at_once(self):
         with self.assertRaisesRegex(ValueError, r"cones\[0\]\.x: must be a finite number"):
             conelane.Scene([[np.nan, 0]], (0, 0, 0))
@@ -78,7 +87,7 @@ class Lanes(InFolder):
 
     def test_a_lane_is_read_as_it_was_written(self):
         for name in ("front", "rld-pair"):
-            lane = conelane.Detector(name).detect_scene(self.scene)
+            lane = conelane.Detector(name).detect_scene(self.scene, time_limit_ms=None)
             conelane.write_lanes(self.folder / "l.lanes.jsonl", [lane])
             again, = conelane.read_lanes(self.folder / "l.lanes.jsonl", [self.scene])
             for key in ("scene_id", "method", "status", "confidence", "trusted_m", "objective", "bound", "closed"):
@@ -109,6 +118,26 @@ class Lanes(InFolder):
                               ("{}\n", r"l\.lanes\.jsonl:1: ")):
             with self.subTest(text), self.assertRaisesRegex(ValueError, message):
                 conelane.read_lanes(self.write("l.lanes.jsonl", text), [self.scene])
+
+
+class Frames(InFolder):
+    def test_what_some_cones_have_is_read(self):
+        file = self.write("r.frames.jsonl", '{"pose": {"x": 0, "y": 0, "yaw": 0}, "reset": false, "cones": [{"x": 1, "y": 1, "id": 7, "confidence": '
+                          '0.5, "position_covariance": [[0.1, 0], [0, 0.2]], "color_probabilities": [0, 0.6, 0.4, 0, 0]}, '
+                          '{"x": 2, "y": 1, "color": "yellow"}]}')
+        frame, = filter(None, frames.read_frames(file))
+        frames.write_frames(self.folder / "w.frames.jsonl", [frame])
+        for one in (frame, next(frames.read_frames(self.folder / "w.frames.jsonl"))):
+            self.assertEqual([column.tolist() for column in one[3:]], [
+                [7, conelane.NO_ID], [[0, 0.6, 0.4, 0, 0], [0, 0, 1, 0, 0]], [0.5, 1], [[[0.1, 0], [0, 0.2]], [[0, 0], [0, 0]]]])
+            conelane.Planner().update(**one._asdict())
+
+    def test_faults(self):
+        for text in ('{"reset": "no"}', "{", "[1]", '[{"car_position": [0, 0]}]', '{"time_s": "now"}', '{"cones": [1]}'):
+            with self.subTest(text), self.assertRaisesRegex(ValueError, r"r\.frames\.jsonl(:1)?: "):
+                list(frames.read_frames(self.write("r.frames.jsonl", text)))
+        with self.assertRaisesRegex(ValueError, "holds no frame"):
+            replay.replay([None], conelane.Planner())
 
 
 class Tracks(InFolder):
@@ -166,7 +195,7 @@ class Scores(unittest.TestCase):
         self.assertEqual((good.lane_length_m, good.ground_truth_length_m, good.divergence_distance_m), (8.0, 8.0, None))
         np.testing.assert_allclose(good.lateral_error_m, 0.0, atol=1e-6)
         # The same cones without the last left one: now the false one is left of the lane.
-        astray = conelane.Detector("rld-pair").detect(np.delete(CONES, 4, axis=0), (0, 0, 0), ids=[0, 1, 2, 3, 5, 6])
+        astray = conelane.Detector("rld-pair").detect(np.delete(CONES, 4, axis=0), (0, 0, 0), ids=[0, 1, 2, 3, 5, 6], time_limit_ms=None)
         self.assertEqual(astray.ids[astray.left].tolist(), [0, 2, 6])
         bad = conelane.score(scene, astray, course)
         self.assertEqual((bad.category, bad.usable, bad.success), ("diverging_below_20", False, False))
@@ -210,9 +239,10 @@ class Rld(unittest.TestCase):
         heavy = conelane.solve_rld(CONES, (0, 0, 0), parameters={"w_b": 2.0})
         default = conelane.solve_rld(CONES, (0, 0, 0))
         self.assertAlmostEqual(heavy.objective, default.objective - 4.0)  # four edges, each worth 1 more
-        everything = conelane.rld_parameters("context")
-        same = [conelane.solve_rld(CONES, (0, 0, 0), parameters=p).objective for p in ("context", everything)]
-        self.assertEqual(same[0], same[1])
+        for name in ("context", "learned"):
+            same = [conelane.solve_rld(CONES, (0, 0, 0), parameters=p).objective for p in (name, conelane.rld_parameters(name))]
+            self.assertEqual(same[0], same[1])
+            self.assertNotEqual(same[0], default.objective)
 
     def test_faults(self):
         for message, options in (("there is no solver 'cbc', only path-pair, exhaustive", {"solver": "cbc"}),

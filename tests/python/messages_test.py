@@ -176,7 +176,7 @@ class All(unittest.TestCase):
                          (messages.to_pacsim, messages.from_pacsim)):
             cones = back(to([]))
             self.assertEqual((cones.cones.shape, cones.colors.shape), ((0, 2), (0,)))
-            self.assertEqual(conelane.Detector("clc").detect(**cones._asdict(), pose=(0, 0, 0)).status, "none")
+            self.assertEqual(conelane.Detector("clc").detect(**cones._asdict(), pose=(0, 0, 0), time_limit_ms=None).status, "none")
 
     def test_big_orange_cones_can_be_said(self):
         place, color = [[1, 2]], ["big_orange"]

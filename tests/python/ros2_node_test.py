@@ -26,7 +26,7 @@ def cones(time_ms, frame="base_link", ahead=0.0):
 
 class Core(unittest.TestCase):
     def setUp(self):
-        self.core = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=1000.0)
+        self.core = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=None)
 
     def level(self, messages):
         status, = messages["/diagnostics"]["status"]
@@ -44,6 +44,9 @@ class Core(unittest.TestCase):
         self.assertAlmostEqual(first["position"]["y"], 1.0, delta=1.1)  # half way between the poses
         self.assertGreater(last["position"]["y"], 10.0)
         self.assertAlmostEqual(first["orientation"]["z"], math.sqrt(0.5), delta=0.05)
+        message = cones(200)
+        message["blue_cones"][1]["covariance"] = [math.nan, 0.0, 0.0, 1.0]  # costs this cone alone
+        self.assertEqual(self.level(self.core.on_cones(EUFS, message, 0)), (b"\x00", "following"))
         lines = {(one["ns"], one["id"]): one for one in messages["markers"]["markers"]}
         for (side, is_rest), line in lines.items():
             self.assertEqual(line["action"], 0 if len(line["points"]) > 1 else 2)
@@ -57,14 +60,22 @@ class Core(unittest.TestCase):
         self.core.on_poses(TF, {"transforms": [transform]}, is_fixed=True)
         self.core.on_poses(ODOMETRY, odometry(100, 5.0))
         of_sensor = self.core.on_cones(EUFS, cones(100, "lidar", ahead=1.0), 0)
-        other = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=1000.0)
+        other = ros2_node.NodeCore(conelane.Planner(), time_limit_ms=None)
         other.on_poses(ODOMETRY, odometry(100, 5.0))
         for one, same in zip(of_sensor["path"]["poses"], other.on_cones(EUFS, cones(100), 0)["path"]["poses"]):
             for axis in "xy":
                 self.assertAlmostEqual(one["pose"]["position"][axis], same["pose"]["position"][axis], places=9)
 
+    def test_a_pose_in_another_frame_replaces_those_before(self):
+        self.core.on_poses(ODOMETRY, odometry(0, 50.0))
+        self.core.on_poses(ODOMETRY, {**odometry(100, 5.0), "header": header(100, "map")})
+        path = self.core.on_cones(EUFS, cones(60), 0)["path"]
+        self.assertEqual(path["header"]["frame_id"], "map")
+        self.assertLess(path["poses"][0]["pose"]["position"]["y"], 8.0)
+
     def test_what_is_wrong_is_a_diagnostic(self):
         self.assertEqual(self.level(self.core.on_cones("my_msgs/msg/Blob", {}, 7))[0], b"\x02")
+        self.assertIn("pose of 'base_link'", self.level(self.core.on_poses(ODOMETRY, odometry(0, math.nan)))[1])
         self.core.on_poses(ODOMETRY, odometry(0, 0.0))
         self.assertEqual(self.core.on_cones(EUFS, cones(700), 0), {})
         messages = self.core.on_cones(EUFS, cones(800), 0)  # the first ones never got a pose
