@@ -102,6 +102,10 @@ TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
     EXPECT_THAT(refused("--methods front"), HasSubstr("needs scenes with colour"));
     EXPECT_THAT(refused("--color --methods front,clc"), HasSubstr("'clc' ignores colours"));
     EXPECT_THAT(refused("--color --methods front --folds cv/folds"), HasSubstr("--folds"));
+    EXPECT_THAT(run("cross-validate --family b=generated:circle --family a=generated:curvy --methods front "
+                    "--folds cv/folds --out swapped")
+                    .errors,
+                AllOf(HasSubstr("cv/folds/b/"), HasSubstr("training.tracks: has learned from 'circle'")));
     std::filesystem::remove(path("cv/folds/b/rld-shape.json"));
     EXPECT_THAT(refused("--color --methods rld-shape"), HasSubstr("rld-shape.json"));
     std::filesystem::remove_all(path("cv/folds/b"));
