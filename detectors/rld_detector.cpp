@@ -63,6 +63,7 @@ class RldDetector : public LaneDetector {
         if (part.left.empty() || part.right.empty()) {
             return solve_by_any_d_near(nearest_ahead(scene, *cones.nearest), deadline);
         }
+        if (part == answer.lane) return answer;
         if (!answer.solved) answer.solved.emplace();
         answer.solved->lane = std::move(answer.lane);
         answer.solved->optimality = std::exchange(answer.optimality, {});

@@ -273,8 +273,9 @@ std::vector<MapPlace> recognise(const std::vector<Cone>& map, std::vector<Cone>&
     for (std::size_t i = 0; i < map.size(); ++i) {
         if (known_of[i] == kNone) {
             known_of[i] = known.size();
-            known.push_back(map[i]);
-            known.back().id = static_cast<ConeId>(known_of[i]);
+            // Place and colour only: what else the recording says would show that a cone is no false
+            // positive.
+            known.push_back({.id = static_cast<ConeId>(known_of[i])});
         }
         known[known_of[i]].position = map[i].position;
         known[known_of[i]].color = map[i].color;

@@ -115,8 +115,12 @@ std::vector<Corner> legs(int count, double length_m, double pitch_m, LayoutDraw&
             corners.push_back({{0.0, leg * pitch_m}, ends_m});
             break;
         }
-        const double x_m =
-            right ? length_m + draw.uniform(-3.0, 3.0) : 1.2 * pitch_m + draw.uniform(0.0, 3.0);
+        double x_m = right ? length_m + draw.uniform(-3.0, 3.0) : 1.2 * pitch_m + draw.uniform(0.0, 3.0);
+        // A leg is at least as long as the hairpins at its ends need.
+        const double before_m = corners.back().at.x();
+        if (leg > 0)
+            x_m =
+                right ? std::max(x_m, before_m + 2.0 * hairpin_m) : std::min(x_m, before_m - 2.0 * hairpin_m);
         corners.push_back({{x_m, leg * pitch_m}, hairpin_m});
         corners.push_back({{x_m, (leg + 1) * pitch_m}, hairpin_m});
     }

@@ -113,6 +113,25 @@ std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) 
     return families;
 }
 
+void require_held_out(const std::set<std::string>& courses, const fs::path& fold) {
+    std::error_code unreadable;  // is said where the files are used
+    for (const fs::directory_entry& entry : fs::directory_iterator(fold, unreadable)) {
+        const fs::path& file = entry.path();
+        if (file.extension() != ".json" || !entry.is_regular_file(unreadable)) continue;
+        const auto json = nlohmann::json::parse(text_of(file), nullptr, false);
+        if (!json.is_object() || !json.contains("training") || !json["training"].is_object()) continue;
+        for (const char* key : {"tracks", "trust_tracks"}) {
+            const nlohmann::json tracks = json["training"].value(key, nlohmann::json::array());
+            for (const nlohmann::json& track : tracks) {
+                if (!track.is_string() || !courses.contains(track.get<std::string>())) continue;
+                throw InputError(file, 0, fmt::format("training.{}", key),
+                                 fmt::format("has learned from '{}', which '{}' holds out",
+                                             track.get<std::string>(), fold.filename().string()));
+            }
+        }
+    }
+}
+
 ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs::path& directory) {
     check(options);
     const auto family_of =
@@ -123,6 +142,15 @@ ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs
         std::ranges::copy(family.tracks, std::back_inserter(comparison.tracks));
     comparison.cross_validation = record_of(options);
 
+    for (const CourseFamily& family : options.families) {
+        std::set<std::string> courses;
+        for (const auto& [course, of] : *family_of) {
+            if (of == family.name) courses.insert(course);
+        }
+        for (const fs::path* const learned : {&options.folds, &options.colors_from}) {
+            if (!learned->empty()) require_held_out(courses, *learned / family.name);
+        }
+    }
     const bool learns = options.folds.empty();
     const fs::path folds = learns ? directory / "folds" : options.folds;
     comparison.prepare = [&] {

@@ -14,6 +14,10 @@ struct CourseFamily {
 /// with the same name is added to that family. Throws InvalidInput naming a text of another form.
 [[nodiscard]] std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts);
 
+/// Throws InputError naming a file in the folder of learned files whose training record has one of these
+/// courses, which are held out. Files without a record are not checked.
+void require_held_out(const std::set<std::string>& courses, const std::filesystem::path& fold);
+
 struct CrossValidationOptions {
     std::vector<CourseFamily> families;  ///< at least two; each is held out once
     std::vector<std::string> always;     ///< SPECs of tracks that every fold learns from; none is scored
@@ -34,7 +38,8 @@ struct CrossValidationOptions {
 /// drive them unchanged. Writes the files of `compare` to the directory, and learned files to folds/FAMILY/
 /// in it. With `folds` nothing is learned, and the record has hashes of the files. A stopped run resumes.
 /// Returns the table. Throws InputError or InvalidInput, also if a course belongs to two families, or to a
-/// family and to `always`, if a learned file is missing, or if a detector with `colors_from` ignores colors.
+/// family and to `always`, if a learned file is missing or has learned from the courses it is for, or if a
+/// detector with `colors_from` ignores colors.
 [[nodiscard]] ComparisonOutcome cross_validate(const CrossValidationOptions& options,
                                                const std::filesystem::path& directory);
 

@@ -1,5 +1,6 @@
 #include "detectors/strip_detector.hpp"
 #include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/track_spec.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "experiments/methods/method.hpp"
 #include "graph_search/clc/clc_detector.hpp"
@@ -20,6 +21,7 @@ constexpr const char* kStepScores = "step_scores.json";
 constexpr const char* kExtendedNet = "rank_net_extended.json";
 constexpr const char* kPaperNet = "rank_net_paper.json";
 constexpr const char* kShape = "rld-shape.json";
+constexpr const char* kShapeRecord = "rld-shape.record.json";
 constexpr const char* kLearnedRld = "rld-learned.json";
 constexpr const char* kLearnedRldCheckpoint = "rld-learned.checkpoint.json";
 constexpr const char* kColoredRldCheckpoint = "rld-learned.colors.checkpoint.json";
@@ -161,6 +163,11 @@ void learn_shape(const LearningOptions& options, const fs::path& folder) {
                                    ? tuned_shape(options, solved)
                                    : read_rld_parameters(options.without_colors / kShape);
     if (options.scenes.with_color) parameters = with_color_weight(parameters, options, solved);
+    nlohmann::ordered_json record{{"training", {{"tracks", nlohmann::ordered_json::array()}}}};
+    for (const std::string& spec : options.tracks) {
+        for (const Track& track : load_tracks(spec)) record["training"]["tracks"].push_back(track.name);
+    }
+    write(folder / kShapeRecord, record.dump() + '\n');
     write_rld_parameters(file, parameters);
 }
 
@@ -182,6 +189,7 @@ void learn_rld(const LearningOptions& options, const fs::path& folder) {
     const fs::path file = folder / kLearnedRld;
     if (fs::exists(file)) return;
     RldTrainingOptions training;
+    training.start = with_shape_costs({});  // set by hand: `shape` was tuned on courses that folds hold out
     training.units = kLearnedRldUnits;
     training.steps =
         static_cast<std::size_t>(std::lround(options.rld_steps * static_cast<double>(kLearnedRldSteps)));

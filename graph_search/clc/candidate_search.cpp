@@ -68,6 +68,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
             run_from(seed, &seed == &seeds().back(), scene, report);
             seed.found_end = pairs_.found().size();
         }
+        if (reach_.left_out()) report.exhausted = false;
         if (rules_.with_features) add_scene_features(scene);
     } else {
         report.complete = false;

@@ -43,7 +43,7 @@ class CandidateSearch {
     struct Report {
         std::int64_t iterations = 0;
         bool complete = true;   ///< every starting pair tried was searched to its end
-        bool exhausted = true;  ///< and none was left out
+        bool exhausted = true;  ///< and no pair and no step was left out
         /// The limit that cut a search short; iterations only if no other limit did.
         std::optional<StopReason> stopped_by;
     };

@@ -36,6 +36,7 @@ Point absolute_angle_on_circle(const Point& a, const Point& b) {
 void StepReach::reset(const SearchGraph& graph, std::size_t most) {
     graph_ = &graph;
     most_ = most;
+    left_out_ = false;
     squared_m2_.assign(graph.vertex_count(), -1.0);
     first_.resize(graph.vertex_count());
     count_.resize(graph.vertex_count());
@@ -62,6 +63,7 @@ void StepReach::find(Vertex vertex) {
         }
     }
     count_[vertex] = static_cast<std::uint32_t>(allowed_.size()) - first_[vertex];
+    left_out_ |= count_[vertex] < neighbours.size();
 }
 
 void NextVertexDecider::reset(const SearchGraph& graph, double distance_weight_per_m, StepReach* reach) {

@@ -55,12 +55,15 @@ class StepReach {
         if (squared_m2_[vertex] < 0.0) find(vertex);
         return std::span(allowed_).subspan(first_[vertex], count_[vertex]);
     }
+    /// Whether a vertex that was asked for has neighbours that are not allowed.
+    [[nodiscard]] bool left_out() const { return left_out_; }
 
   private:
     void find(Vertex vertex);
 
     const SearchGraph* graph_ = nullptr;
     std::size_t most_ = 0;
+    bool left_out_ = false;
     std::vector<double> squared_m2_;    ///< by vertex; negative until it is asked for
     std::vector<std::uint32_t> first_;  ///< by vertex, in `allowed_`
     std::vector<std::uint32_t> count_;  ///< by vertex

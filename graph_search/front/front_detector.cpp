@@ -61,7 +61,7 @@ class FrontDetector final : public LaneDetector {
             answer.stopped_by = budget.stopped_by;
             return answer;
         }
-        front_.begin(scene, cost_, options_, evidence_ ? &*evidence_ : nullptr);
+        front_.begin(scene, cost_, options_, evidence_ ? &*evidence_ : nullptr, budget);
         front_.run(budget);
         answer.stopped_by = budget.stopped_by;
         answer.enumeration = {front_.expanded(), !answer.stopped_by && !front_.left_out(), {}};

@@ -33,7 +33,7 @@ double front_angle(double cross, double dot) {
     return cross < 0.0 ? -angle : angle;
 }
 
-void FrontMap::build(const Scene& scene) {
+void FrontMap::build(const Scene& scene, SearchBudget& budget) {
     const Point heading = scene.pose.heading();
     const std::size_t count = scene.cones.size();
     found_.clear();
@@ -52,15 +52,15 @@ void FrontMap::build(const Scene& scene) {
                std::tuple(positions_[b].x(), positions_[b].y(), scene.cones[b].id);
     });
     for (std::size_t i = 0; i < count; ++i) positions_[i] = in_car_frame(order_[i]);
-    find_view_radius();
-    take_colors(scene);
+    find_view_radius(budget);
+    take_colors(scene, budget);
     take_spread(scene);
     places_.assign(count, {0, kNotAsked});
     used_ = 0;
     left_out_edges_ = false;
 }
 
-void FrontMap::take_colors(const Scene& scene) {
+void FrontMap::take_colors(const Scene& scene, SearchBudget& budget) {
     has_colors_ = std::ranges::any_of(scene.cones, [](const Cone& cone) {
         return cone.color_probabilities ? cone.color_probabilities->unknown < 1.0
                                         : cone.color != ConeColor::unknown;
@@ -81,7 +81,8 @@ void FrontMap::take_colors(const Scene& scene) {
     for (Vertex cone = 0; cone < positions_.size(); ++cone) {
         const float own = colors_[cone].speaks_for(kLeft);
         if (own == 0.0F) continue;
-        const Vertex other = nearest_colored(cone);
+        const Vertex other = nearest_colored(cone, budget);
+        if (budget.stopped_by) return;
         if (other == kNoCone) continue;
         sum += own * colors_[other].speaks_for(kLeft);
         pairs += 1.0F;
@@ -117,13 +118,13 @@ double FrontMap::spread_between_m(Vertex a, Vertex b) const {
 }
 
 /// The nearest other cone that has a color; of equally near ones the first.
-Vertex FrontMap::nearest_colored(Vertex cone) const {
+Vertex FrontMap::nearest_colored(Vertex cone, SearchBudget& budget) const {
     const Point& at = positions_[cone];
     double nearest_m2 = kShortSegment_m * kShortSegment_m;
     Vertex nearest = kNoCone;
     const auto goes_on_past = [&](Vertex other) {
         const double ahead_m = positions_[other].x() - at.x();
-        if (ahead_m * ahead_m >= nearest_m2) return false;
+        if (ahead_m * ahead_m >= nearest_m2 || budget.spend(1)) return false;
         const double off_m2 = (positions_[other] - at).squaredNorm();
         if (off_m2 < nearest_m2 && colors_[other].speaks_for(kLeft) != 0.0F) {
             nearest_m2 = off_m2;
@@ -136,21 +137,22 @@ Vertex FrontMap::nearest_colored(Vertex cone) const {
     return nearest;
 }
 
-void FrontMap::find_view_radius() {
+void FrontMap::find_view_radius(SearchBudget& budget) {
     view_radius_m_ = 0.0;
     double farthest_m = 0.0;
     for (Vertex cone = 0; cone < positions_.size(); ++cone) {
         const double distance_m = positions_[cone].norm();
         farthest_m = std::max(farthest_m, distance_m);
-        if (distance_m > view_radius_m_ && !is_alone(cone)) view_radius_m_ = distance_m;
+        if (distance_m > view_radius_m_ && !is_alone(cone, budget)) view_radius_m_ = distance_m;
+        if (budget.stopped_by) return;
     }
     if (view_radius_m_ == 0.0) view_radius_m_ = farthest_m;
 }
 
-bool FrontMap::is_alone(Vertex cone) const {
+bool FrontMap::is_alone(Vertex cone, SearchBudget& budget) const {
     const Point& at = positions_[cone];
     const auto [first, last] = ahead_between(at.x() - kMaxSegment_m, at.x() + kMaxSegment_m);
-    for (Vertex other = first; other < last; ++other) {
+    for (Vertex other = first; other < last && !budget.spend(1); ++other) {
         if (other != cone && (positions_[other] - at).squaredNorm() <= kMaxSegment_m * kMaxSegment_m)
             return false;
     }

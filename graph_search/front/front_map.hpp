@@ -96,7 +96,12 @@ class FrontMap {
     static constexpr std::size_t kFewEdges = 12;   ///< a cone that has fewer looks farther
     static constexpr std::size_t kMaxEdges = 160;  ///< from a cone, the shortest ones
 
-    void build(const Scene& scene);
+    /// Draws on the budget's time; once it is spent, the map is of no use.
+    void build(const Scene& scene, SearchBudget& budget);
+    void build(const Scene& scene) {
+        SearchBudget unlimited;
+        build(scene, unlimited);
+    }
 
     [[nodiscard]] std::size_t size() const { return positions_.size(); }
     [[nodiscard]] const Point& position(Vertex cone) const { return positions_[cone]; }
@@ -169,12 +174,12 @@ class FrontMap {
         return &blocks_[place / kEdgesPerBlock][place % kEdgesPerBlock];
     }
     void find_edges(Vertex from);
-    void find_view_radius();
-    [[nodiscard]] bool is_alone(Vertex cone) const;
+    void find_view_radius(SearchBudget& budget);
+    [[nodiscard]] bool is_alone(Vertex cone, SearchBudget& budget) const;
     [[nodiscard]] EdgeNeighbourhood find_neighbourhood(Vertex from, std::size_t edge);
-    void take_colors(const Scene& scene);
+    void take_colors(const Scene& scene, SearchBudget& budget);
     void take_spread(const Scene& scene);
-    [[nodiscard]] Vertex nearest_colored(Vertex cone) const;
+    [[nodiscard]] Vertex nearest_colored(Vertex cone, SearchBudget& budget) const;
 
     std::vector<Point> positions_;
     std::vector<std::uint32_t> order_;

@@ -44,11 +44,11 @@ void validate(const FrontSearchOptions& options) {
 }
 
 void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
-                        FrontEvidence* evidence) {
+                        FrontEvidence* evidence, SearchBudget& budget) {
     cost_ = &cost;
     evidence_ = evidence;
     options_ = options;
-    map_.build(scene);
+    map_.build(scene, budget);
     if (evidence != nullptr) evidence->find_again(scene, map_);
     nodes_.clear();
     finished_.clear();
@@ -58,6 +58,8 @@ void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOp
     next_level_ = 0;
     open_lane_ = kNone;
     expanded_ = 0;
+    left_out_ = budget.stopped_by.has_value();
+    if (left_out_) return;
     starts_.list(map_, options_.rules);
     left_out_ = starts_.left_out;
     const std::span<const float> scores = cost.score_starts(map_, starts_);

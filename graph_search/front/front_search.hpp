@@ -80,9 +80,14 @@ class FrontSearch {
     };
 
     /// Keeps the references until the next run, and memory from call to call. With evidence, scores include
-    /// its bonuses.
+    /// its bonuses. Where the budget is spent meanwhile, there is no start.
     void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
-               FrontEvidence* evidence = nullptr);
+               FrontEvidence* evidence, SearchBudget& budget);
+    void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
+               FrontEvidence* evidence = nullptr) {
+        SearchBudget unlimited;
+        begin(scene, cost, options, evidence, unlimited);
+    }
     /// Extends the best states of the next level that has any. Returns whether there was such a level; false
     /// if the budget is spent.
     bool advance(SearchBudget& budget);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 
 namespace conelane {
 namespace {
@@ -109,7 +108,8 @@ int WeightsReader::version(std::initializer_list<int> known) {
     const Value& value = find("version");
     std::string list;
     for (const int version : known) {
-        if (value.numbers == std::vector<double>{static_cast<double>(version)}) return version;
+        if (!value.is_list && value.numbers == std::vector<double>{static_cast<double>(version)})
+            return version;
         list += (list.empty() ? "" : version == *(known.end() - 1) ? " or " : ", ") + std::to_string(version);
     }
     throw InvalidInput("version", "must be " + list);
@@ -137,8 +137,9 @@ const std::vector<double>& WeightsReader::numbers(const std::string& path) {
 std::vector<float> WeightsReader::floats(const std::string& path, std::size_t count) {
     std::vector<float> result;
     for (const double number : numbers(path)) {
-        if (std::abs(number) > static_cast<double>(std::numeric_limits<float>::max()))
-            throw InvalidInput(path, numbered(result.size(), "is out of range"));
+        constexpr double kMax = 1e6;  // what larger ones add up to may be infinite
+        if (std::abs(number) > kMax)
+            throw InvalidInput(path, numbered(result.size(), "is not between -1e6 and 1e6"));
         result.push_back(static_cast<float>(number));
     }
     if (result.size() != count)

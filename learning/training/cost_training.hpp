@@ -135,6 +135,7 @@ class CostTraining : public GradientLearner {
     }
 
     void report(std::size_t steps) override {
+        if (sums_.scenes == 0) return say_(fmt::format("step {} of {}", steps, options_.steps));
         const double allowed = std::max(sums_.allowed, 1.0);
         say_(fmt::format(
             "step {} of {}: loss {:.4f}; of {} scenes the true lane is allowed in {:.1f} %; of these "

@@ -304,7 +304,10 @@ OptionFields draw_fields(DrawnTrainingOptions& options, bool with_noise) {
                        {"--noise-ranges", "scenes.noise_ranges_m", &scenes.noise_ranges_m, kPositive,
                         "smallest and largest radius of the half disc that holds them [m]"}});
     }
-    fields.push_back({"--highest-rate", "scenes.highest_rate", &scenes.highest_rate, kShare,
+    fields.push_back({"--highest-rate",
+                      "scenes.highest_rate",
+                      &scenes.highest_rate,
+                      {0.0, 0.99, true},
                       "share of false positives is drawn up to this"});
     return fields;
 }

@@ -212,7 +212,7 @@ class FrontTraining : public GradientLearner {
     }
 
     void report(std::size_t steps) override {
-        const StageName stage = stage_of(steps - 1);
+        const StageName stage = stage_of(steps - std::min<std::size_t>(steps, 1));
         const auto scenes = static_cast<double>(std::max<std::size_t>(sums_.scenes, 1));
         const auto percent = [&](double sum) { return 100.0 * (sum / scenes); };
         std::string line =
@@ -224,6 +224,7 @@ class FrontTraining : public GradientLearner {
                 fmt::format(", kept {:.1f} %, answered {:.1f} %", percent(sums_.kept), percent(sums_.found));
         if (stage == kJudging) line += fmt::format(", usable {:.1f} %", percent(sums_.found));
         if (stage != kMoves) line += fmt::format(", risk {:.4f}", sums_.risk / scenes);
+        if (sums_.scenes == 0) line = fmt::format("step {} of {}", steps, all_steps());
         std::vector<FrontFigures> figures;
         for (const SceneSet& set : held_out_)
             figures.push_back(front_figures(set, weights(), options_.loss.search, options_.threads));
@@ -297,9 +298,10 @@ Json names_of(const std::vector<Track>& courses) {
     return names;
 }
 
-void require_not_trained_on(const std::string& name, const std::vector<Track>& courses, const char* option) {
+void require_not_used(const std::string& name, const std::vector<Track>& courses, const char* option,
+                      const std::string& use) {
     if (std::ranges::find(courses, name, &Track::name) != courses.end())
-        throw InputError("", 0, option, "track '" + name + "' is trained on");
+        throw InputError("", 0, option, "track '" + name + "' is " + use);
 }
 
 Json record_of(const FrontFigures& figures) {
@@ -351,11 +353,11 @@ OptionFields option_fields(FrontTrainingOptions& options) {
         {"", "through_search.level_m", &loss.search.level_m},
         {"", "through_search.far_m", &loss.search.far_m},
         {"", "through_search.listed", &loss.listed},
-        {"--fall-out", "through_search.fall_out", &loss.fall_out, kAny,
+        {"--fall-out", "through_search.fall_out", &loss.fall_out, kNotNegative,
          "weight of the loss where the true lane leaves the beam"},
-        {"--minimum-risk", "through_search.minimum_risk", &loss.minimum_risk, kAny,
+        {"--minimum-risk", "through_search.minimum_risk", &loss.minimum_risk, kNotNegative,
          "weight of the expected risk"},
-        {"--listwise", "through_search.listwise", &loss.listwise, kAny,
+        {"--listwise", "through_search.listwise", &loss.listwise, kNotNegative,
          "weight of the loss over the best lanes"},
         {"", "through_search.risk_scale", &loss.risk_scale},
         {"", "through_search.unusable", &loss.risk.unusable},
@@ -457,8 +459,10 @@ FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
     const std::vector<Track> courses = annotated_tracks(options.tracks);
     FrontTrainingOptions training = options.training;
     training.trust_courses = annotated_tracks(options.trust_tracks);
+    if (training.trust_courses.empty() && !options.trust_tracks.empty())
+        throw InputError("", 0, "--trust-tracks", "have no annotated boundaries");
     for (const Track& track : training.trust_courses)
-        require_not_trained_on(track.name, courses, "--trust-tracks");
+        require_not_used(track.name, courses, "--trust-tracks", "trained on");
     std::vector<SceneSet> held_out;
     for (const std::string& condition : options.conditions) {
         if (options.hold_out.empty()) break;
@@ -474,7 +478,8 @@ FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
     if (!held_out.empty()) {
         for (const auto& [name, boundaries] : held_out.front().tracks) {
             held_out_names.push_back(name);
-            require_not_trained_on(name, courses, "--hold-out");
+            require_not_used(name, courses, "--hold-out", "trained on");
+            require_not_used(name, training.trust_courses, "--hold-out", "one of --trust-tracks");
         }
     }
     FrontTrainingRun run;

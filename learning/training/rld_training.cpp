@@ -1,7 +1,6 @@
 #include "learning/training/rld_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "conelane/rld_parameter_sets.hpp"
 #include "evaluation/formats/parameter_file.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
@@ -20,8 +19,8 @@ double& weight(LearnedCosts& costs, LearnedPart part, std::string_view name) {
 }
 
 LearnedCosts initial_costs(const RldTrainingOptions& options) {
-    const LearnedCosts start =
-        options.parameters.learned_costs ? *options.parameters.learned_costs : shape_as_learned_costs();
+    const LearnedCosts start = options.parameters.learned_costs ? *options.parameters.learned_costs
+                                                                : as_learned_costs(options.start);
     const bool is_linear = std::ranges::all_of(
         start.networks, [](const LearnedNetwork& network) { return network.units() == 0; });
     return is_linear ? with_hidden_units(start, options.units, options.seed) : start;
@@ -111,7 +110,7 @@ CostLoss RldLearner::add(const AnnotatedScene& scene, const RldParameters& param
 }
 
 RldParameters rld_learning_parameters() {
-    RldParameters parameters = rld_parameter_set("shape").value();
+    RldParameters parameters = with_shape_costs({});
     for (double RldParameters::*const weight :
          {&RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p, &RldParameters::w_b,
           &RldParameters::unevenness_weight, &RldParameters::facing_weight,
@@ -133,11 +132,10 @@ RldParameters rld_learning_parameters() {
     return parameters;
 }
 
-LearnedCosts shape_as_learned_costs() {
+LearnedCosts as_learned_costs(const RldParameters& shape) {
     // Cost of each turn and end, so that training can lower it before a limit of LearnedCosts holds.
     constexpr double kMoved = 0.5;
     constexpr double kEnd = -1.0;
-    const RldParameters shape = rld_parameter_set("shape").value();
     LearnedCosts costs = LearnedCosts::zero();
     weight(costs, LearnedPart::edge, "one") = -shape.w_b - kMoved;
     weight(costs, LearnedPart::edge, "spacing") = shape.w_s;
@@ -166,8 +164,10 @@ LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, st
 
 OptionFields option_fields(RldTrainingOptions& options) {
     options.parameters_hash = tag_of("", options.parameters).hash.value();
+    options.start_hash = options.parameters.learned_costs ? "" : tag_of("", options.start).hash.value();
     return cost_fields(
         options, {{"", "parameters_hash", &options.parameters_hash},
+                  {"", "start_hash", &options.start_hash},
                   {"--margin", "margin.near", &options.margin.near, kNotNegative,
                    "cost by which the true lane has to beat another one, for each edge within 20 m "
                    "that differs"},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "conelane/rld_parameter_sets.hpp"
 #include "conelane/rld_solver.hpp"
 #include "learning/training/cost_training.hpp"
 #include "model/learned_features.hpp"
@@ -28,9 +29,9 @@ void add_cost_gradient(const LaneGraphProblem& problem, const LearnedFeatures& f
 /// missed cones.
 [[nodiscard]] RldParameters rld_learning_parameters();
 
-/// The costs of the shipped set `shape` as linear learned costs, with a constant moved from edges to turns
-/// and ends, which changes no optimum.
-[[nodiscard]] LearnedCosts shape_as_learned_costs();
+/// The costs of a lane's shape, such as those of the shipped set `shape`, as linear learned costs, with a
+/// constant moved from edges to turns and ends, which changes no optimum.
+[[nodiscard]] LearnedCosts as_learned_costs(const RldParameters& shape);
 
 /// Linear costs with this number of hidden units, drawn by the seed, which contribute almost nothing. They do
 /// not depend on colours and confidences.
@@ -41,9 +42,12 @@ void add_cost_gradient(const LaneGraphProblem& problem, const LearnedFeatures& f
 /// Most are explained by option_fields.
 struct RldTrainingOptions : CostTrainingOptions {
     /// Limits and costs to which the learned ones are added. If they have learned costs, the training begins
-    /// with them, and linear ones get hidden units; otherwise it begins with shape_as_learned_costs.
+    /// with them, and linear ones get hidden units; otherwise it begins with the costs of `start`.
     RldParameters parameters = rld_learning_parameters();
+    /// `shape` was tuned on recorded courses: a training that must not know those begins with other costs.
+    RldParameters start = rld_parameter_set("shape").value();
     std::string parameters_hash;  ///< set by option_fields
+    std::string start_hash;       ///< the same
     RldMargin margin;
     std::int64_t max_work = 15'000'000;
 };

@@ -146,7 +146,10 @@ void learn(GradientLearner& learner, Eigen::ArrayXd values, const LearningLoop& 
         adam.restore(std::move(checkpoint.adam));
         learner.set_values(values);
     }
-    if (learner.is_done(steps)) finish();
+    if (learner.is_done(steps)) {
+        finish();
+        if (loop.report_every > 0) learner.report(steps);
+    }
     while (!learner.is_done(steps)) {
         if (learner.begins_stage(steps)) adam = Adam(values.size(), loop.smallest_deviation);
         const GradientLearner::Step step = arena.execute([&] { return learner.step(steps); });

@@ -72,8 +72,7 @@ void add_cross_validate_command(CLI::App& program) {
                     "several SPECs")
         ->required();
     command.add_option("--always", options->run.always, "SPECs that every fold learns from");
-    command.add_option("--methods", options->detectors, "see `conelane methods`")
-        ->delimiter(',')
+    command.add_option("--methods", options->detectors, "see `conelane methods`, separated by commas")
         ->capture_default_str();
     add_nearest_option(command, options->nearest,
                        "the same cone-set size for every method; they learn from all cones");

@@ -8,6 +8,7 @@
 
 #include <exception>
 #include <map>
+#include <set>
 #include <thread>
 
 namespace conelane::program {
@@ -105,7 +106,13 @@ std::vector<FoldedCourse> courses_of(const Options& options, std::optional<Missi
     for (const CourseFamily& family : parse_families(options.families)) {
         std::filesystem::path fold;
         if (!options.folds.empty()) fold = std::filesystem::path(options.folds) / family.name;
-        for (const std::string& spec : family.tracks) add_circuits(courses, spec, mission, fold);
+        std::set<std::string> held_out;
+        for (const std::string& spec : family.tracks) {
+            add_circuits(courses, spec, mission, fold);
+            if (fold.empty()) continue;
+            for (const Track& track : load_tracks(spec)) held_out.insert(track.name);
+        }
+        if (!fold.empty()) require_held_out(held_out, fold);
     }
     if (courses.empty()) throw InvalidInput("--tracks", "hold no closed course with boundaries");
     return courses;

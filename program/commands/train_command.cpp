@@ -21,8 +21,8 @@ void say(const std::string& line) {
 }
 
 void add_hold_out_every(CLI::App& command, double& every_m) {
-    command.add_option("--hold-out-every", every_m, "travel between poses on the tracks held out [m]")
-        ->capture_default_str();
+    add_number_option(command, "--hold-out-every", every_m, 0.01, 1000.0,
+                      "travel between poses on the tracks held out [m]");
 }
 
 struct FrontOptionsOfTraining {

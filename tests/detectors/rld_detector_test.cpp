@@ -56,6 +56,14 @@ TEST(RldDetector, WithContextFindsTheLaneThatGoesOnAndCutsIt) {
     EXPECT_TRUE(answer.solved->optimality->optimal);
 }
 
+TEST(RldDetector, ALaneThatTheCutLeavesWholeStaysOptimal) {
+    const LaneAnswer answer = detect(straight(), 16, 17);
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+    EXPECT_TRUE(answer.optimality);
+    EXPECT_FALSE(answer.solved);
+}
+
 TEST(RldDetector, ContextNoLargerThanTheConeSetChangesNothing) {
     const Scene scene = with_false_cone();
     for (const std::size_t context : {3U, 7U}) {

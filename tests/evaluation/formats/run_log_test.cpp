@@ -271,7 +271,9 @@ TEST_F(RunLog, ADrivenPathLabelsWhatTheCarSaw) {
         std::string lines;
         for (const AnnotatedScene& scene : generate_scenes(course, seen)) {
             const auto cones = mapped(scene.scene.cones, [](const Cone& cone) {
-                return fmt::format(R"({{"x": {}, "y": {}}})", cone.position.x(), cone.position.y());
+                return fmt::format(
+                    R"({{"x": {}, "y": {}, "confidence": 0.9, "color_probabilities": [1, 0, 0, 0, 0], "position_covariance": [[0.1, 0], [0, 0.1]]}})",
+                    cone.position.x(), cone.position.y());
             });
             const Pose& pose = scene.scene.pose;
             lines += fmt::format(R"({{"pose": {{"x": {}, "y": {}, "yaw": {}}}, "cones": [{}]}})"
@@ -281,6 +283,10 @@ TEST_F(RunLog, ADrivenPathLabelsWhatTheCarSaw) {
         const auto file = file_with(lines, "lap.frames.jsonl");
         EXPECT_EQ(load_tracks("run:" + file.parent_path().string()).size(), 1U) << "all files of its folder";
         const Track run = read_driven_run(file);
+        for (const Cone& cone : run.cones) {
+            const bool plain = !cone.color_probabilities && !cone.position_covariance;
+            ASSERT_TRUE(plain && cone.confidence == 1.0) << "would show that no false positive was drawn";
+        }
         EXPECT_EQ(run.name, "run_lap");
         EXPECT_EQ(run.closed, course.closed) << name;
         const TrackBoundaries truth = boundaries(course);

@@ -41,6 +41,11 @@ void for_every_track(const Check& check) {
     }
 }
 
+TEST(GeneratedTrack, ALegIsAsLongAsItsHairpinsNeed) {
+    const Track track = generate_track("wide_hairpins", 4697);
+    EXPECT_GT(std::min(track.left.size(), track.right.size()), 20U);
+}
+
 TEST(RoundedPath, OfASquareIsStraightsAndQuarterCircles) {
     const RoundedPath path({{{0, 0}, 2}, {{10, 0}, 3}, {{10, 10}, 2}, {{0, 10}, 2}}, true);
     EXPECT_NEAR(path.length_m(), 40 - 2 * 9 + std::numbers::pi / 2 * 9, 1e-12);

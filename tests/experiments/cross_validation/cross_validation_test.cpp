@@ -1,6 +1,7 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/parameter_file.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "learning/tuning/rld_tuning.hpp"
 #include "tests/support/program_fixture.hpp"
@@ -34,6 +35,9 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 testing::UnorderedElementsAre("curvy", "straight"));
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/rld-learned.weights.json"))),
                 testing::UnorderedElementsAre("curvy", "straight"));
+    const auto costs = nlohmann::json::parse(text_of(path("cv/folds/a/rld-learned.weights.json")));
+    EXPECT_EQ(costs.at("training").at("start_hash"), tag_of("", with_shape_costs({})).hash.value())
+        << "the set `shape` was tuned on courses that folds hold out";
     EXPECT_THAT(outcome.output, Not(HasSubstr("learned from"))) << "nothing in the table was learned from";
 
     // Each course is driven with the weights of the fold that holds it out, and with no others.
@@ -102,6 +106,10 @@ TEST_F(CrossValidation, LearnsColorsAfterWhatAnotherLearnedWithoutThem) {
     EXPECT_THAT(refused("--methods front"), HasSubstr("needs scenes with colour"));
     EXPECT_THAT(refused("--color --methods front,clc"), HasSubstr("'clc' ignores colours"));
     EXPECT_THAT(refused("--color --methods front --folds cv/folds"), HasSubstr("--folds"));
+    EXPECT_THAT(run("cross-validate --family b=generated:circle --family a=generated:curvy --methods front "
+                    "--folds cv/folds --out swapped")
+                    .errors,
+                AllOf(HasSubstr("cv/folds/b/"), HasSubstr("training.tracks: has learned from 'circle'")));
     std::filesystem::remove(path("cv/folds/b/rld-shape.json"));
     EXPECT_THAT(refused("--color --methods rld-shape"), HasSubstr("rld-shape.json"));
     std::filesystem::remove_all(path("cv/folds/b"));

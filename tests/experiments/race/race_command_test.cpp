@@ -99,6 +99,11 @@ TEST_F(RaceCommand, UnusedOrInvalidWeightsAreRefused) {
     expect_refused(kidney + "--methods front,rld-strip --weights front.json", {"front.json"});
     expect_refused("race --family a=generated:kidney --folds . --methods rld-strip --out out",
                    {"a/rld-strip.json"});
+    std::filesystem::create_directories(path("a"));
+    file_with(front_weights_json(shipped_front_options().weights, R"({"tracks": ["circle", "kidney"]})"),
+              "a/front.json");
+    expect_refused("race --family a=generated:kidney --folds . --methods front --out out",
+                   {"a/front.json", "learned from 'kidney'"});
     expect_refused("race --family generated:kidney --methods front --out out", {"--family", "NAME=SPEC"});
     expect_refused("race --mission skidpad --family a=generated:kidney --methods front --out out",
                    {"--family"});

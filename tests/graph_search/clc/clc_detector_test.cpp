@@ -327,6 +327,18 @@ TEST(ClcDetector, NoneOnlyWhereEverythingWasSearched) {
     EXPECT_EQ(one_pair.stopped_by, StopReason::iterations);
     EXPECT_TRUE(one_pair.enumeration->complete) << "of the pair that was tried";
     EXPECT_EQ(make_clc_detector({})->detect(beside, tests::kNoTimeLimit).status, LaneStatus::found);
+
+    // The nearest cones of each are those of its own boundary's doubles, from which no lane goes on.
+    Scene crowded = tests::straight_lane(4);
+    options = {};
+    options.nearest_neighbours = 1;
+    for (std::size_t i = 8; i > 0; --i) {
+        const Cone& cone = crowded.cones[i - 1];
+        crowded.cones.push_back({static_cast<ConeId>(2000 + i), cone.position + Point(0.0, 0.2)});
+    }
+    const LaneAnswer near_only = make_clc_detector(options)->detect(crowded, tests::kNoTimeLimit);
+    EXPECT_EQ(near_only.status, LaneStatus::stopped);
+    EXPECT_EQ(near_only.stopped_by, StopReason::iterations);
 }
 
 TEST(ClcDetector, AFoundLaneTellsWhetherALimitCutTheSearch) {

@@ -45,6 +45,15 @@ float named(const Table& table, const Values& values, std::string_view name) {
     return place == table.end() ? 0.0F : values[static_cast<std::size_t>(place - table.begin())];
 }
 
+TEST(FrontMap, LooksAtTheClockAmongConesThatAreAlone) {
+    Scene scene;
+    for (int i = 0; i < 3000; ++i) scene.cones.push_back({i, {1.0, 20.0 * i}, ConeColor::blue, 1.0});
+    SearchBudget budget;
+    budget.deadline = Deadline(0.0);
+    FrontMap().build(scene, budget);
+    EXPECT_EQ(budget.stopped_by, StopReason::time);
+}
+
 /// A lane that bends to the left. Segments of 3 m, the left one turned by 0.3 rad; the right boundary has
 /// only begun:
 ///                 __ 2

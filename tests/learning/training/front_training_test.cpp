@@ -150,6 +150,11 @@ TEST(FrontTraining, ResumesFromItsCheckpoint) {
         courses(), {}, options, [&](const std::string& line, const auto&) { lines.push_back(line); });
     EXPECT_THAT(lines.front(), testing::StartsWith("step 8 of 16")) << "gone on from step 5";
     EXPECT_TRUE(resumed == whole);
+    const std::vector<SceneSet> held_out(1);
+    std::size_t sets = 0;
+    EXPECT_TRUE(whole == train_front(courses(), held_out, options,
+                                     [&](auto&&, const auto& figures) { sets = figures.size(); }));
+    EXPECT_EQ(sets, 1U) << "a training that was finished has figures too";
     options.seed = 9;
     EXPECT_THROW((void)train_front(courses(), {}, options, {}), InputError) << "another training";
     std::ofstream(options.checkpoint) << "{}";
@@ -247,6 +252,8 @@ TEST(FrontTraining, ARunRecordsWhatItDependedOn) {
     EXPECT_THAT(run.record, testing::HasSubstr(R"("beam":6)"));
     options.trust_tracks = {"generated:kidney@3"};
     EXPECT_THAT(run_front_training(options, {}).record, testing::HasSubstr(R"("trust_tracks":["kidney@3"])"));
+    options.trust_tracks = options.hold_out;
+    EXPECT_THROW((void)run_front_training(options, {}), InputError) << "measured on, so not chosen on";
     options.trust_tracks = options.tracks;
     EXPECT_THROW((void)run_front_training(options, {}), InputError);
     options.trust_tracks.clear();

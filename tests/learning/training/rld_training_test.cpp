@@ -39,7 +39,7 @@ TEST(RldTraining, BeginsWithTheOptimaOfShape) {
           &RldParameters::near_end_weight}) {
         learned.*weight = 0.0;
     }
-    learned.learned_costs = std::make_shared<const LearnedCosts>(shape_as_learned_costs());
+    learned.learned_costs = std::make_shared<const LearnedCosts>(as_learned_costs(shape));
     const auto solver = make_path_pair_solver();
     int lanes = 0;
     int same = 0;
@@ -103,7 +103,7 @@ TEST(RldTraining, TheGradientOfACostIsThatOfItsDifferences) {
 
 /// A turn that would gain costs 0: a step may raise it, but not lower it further.
 TEST(RldTraining, WhatALimitHoldsIsPushedOnlyAwayFromIt) {
-    LearnedCosts costs = shape_as_learned_costs();
+    LearnedCosts costs = as_learned_costs(with_shape_costs({}));
     costs.of(LearnedPart::turn).linear[0] = -50.0;
     costs.of(LearnedPart::far_end).linear[0] = 50.0;
     RldParameters parameters{.learned_costs = std::make_shared<const LearnedCosts>(costs)};
@@ -131,7 +131,7 @@ TEST(RldTraining, WhatALimitHoldsIsPushedOnlyAwayFromIt) {
 TEST(RldTraining, LowersTheLossOfAScene) {
     const FrontScenes scenes(courses(), quick().scenes, 1);
     RldParameters parameters = rld_learning_parameters();
-    LearnedCosts costs = with_hidden_units(shape_as_learned_costs(), 2, 1);
+    LearnedCosts costs = with_hidden_units(as_learned_costs(with_shape_costs({})), 2, 1);
     RldTrainingOptions options;
     options.max_work = 5'000'000;
     RldLearner learner(options);
@@ -180,7 +180,7 @@ TEST(RldTraining, GivesTheSameCostsOnAnyNumberOfThreadsAndOthersFromAnotherSeed)
     const LearnedCosts costs =
         train_rld(courses(), options, [&](const std::string& line) { lines.push_back(line.substr(0, 11)); });
     EXPECT_THAT(lines, testing::ElementsAre("step 5 of 1", "step 10 of ", "step 12 of "));
-    EXPECT_FALSE(costs == with_hidden_units(shape_as_learned_costs(), 3, 0));
+    EXPECT_FALSE(costs == with_hidden_units(as_learned_costs(quick().start), 3, 0));
     options.threads = 2;
     EXPECT_TRUE(train_rld(courses(), options, {}) == costs);
     options.seed = 1;
