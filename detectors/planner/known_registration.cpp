@@ -114,11 +114,17 @@ bool SeenView::covers(const Point& place) const {
 
 SeenView view_of(const Frame& frame) {
     SeenView view{frame.pose};
+    double farthest_m = 0.0;
+    double widest_rad = 0.0;
+    const auto add = [](double value, double& most, double& second) {
+        second = std::max(second, std::min(most, value));
+        most = std::max(most, value);
+    };
     for (const Cone& cone : frame.cones) {
         const double ahead_m = frame.pose.ahead_m(cone.position);
         const double left_m = frame.pose.left_m(cone.position);
-        view.range_m = std::max(view.range_m, std::hypot(ahead_m, left_m));
-        view.bearing_rad = std::max(view.bearing_rad, std::abs(std::atan2(left_m, ahead_m)));
+        add(std::hypot(ahead_m, left_m), farthest_m, view.range_m);
+        add(std::abs(std::atan2(left_m, ahead_m)), widest_rad, view.bearing_rad);
     }
     return view;
 }

@@ -16,8 +16,10 @@ struct SeenCone {
 /// The region that a frame looked at, estimated from its cones.
 struct SeenView {
     Pose pose;
-    double range_m = 0.0;      ///< distance of the farthest cone
-    double bearing_rad = 0.0;  ///< bearing of the cone farthest from the heading
+    /// Distance of the farthest cone but one, and bearing of the cone second farthest from the heading: a
+    /// single false cone far out does not widen the view.
+    double range_m = 0.0;
+    double bearing_rad = 0.0;
 
     /// Whether a cone at this place would certainly be in view.
     [[nodiscard]] bool covers(const Point& place) const;

@@ -22,6 +22,11 @@ TEST(LaneFoot, IsTheNearestPlaceThatRunsWithTheCar) {
         << "within what is asked for, to a segment";
 }
 
+TEST(Turn, IsInTheHalfOpenRange) {
+    EXPECT_EQ(turn_rad(0.0, -std::numbers::pi), std::numbers::pi);
+    EXPECT_EQ(turning_angle({1.0, 0.0}, {-1.0, -1e-20}), std::numbers::pi);
+}
+
 TEST(Stretch, IsCutToStepsAndGoesRoundAClosedLane) {
     const DrivableLane lane = straight_line({0.0, 0.0}, 0.0, 10.0);
     const DrivableLane part = stretch(lane, 2.25, 7.0, 0.5);
