@@ -16,10 +16,8 @@ struct SeenCone {
 /// The region that a frame looked at, estimated from its cones.
 struct SeenView {
     Pose pose;
-    /// Distance of the farthest cone but one, and bearing of the cone second farthest from the heading: a
-    /// single false cone far out does not widen the view.
-    double range_m = 0.0;
-    double bearing_rad = 0.0;
+    double range_m = 0.0;      ///< distance of the farthest cone, if it is not far behind all others
+    double bearing_rad = 0.0;  ///< bearing of the cone farthest from the heading
 
     /// Whether a cone at this place would certainly be in view.
     [[nodiscard]] bool covers(const Point& place) const;

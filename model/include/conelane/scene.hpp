@@ -44,7 +44,7 @@ struct ColorProbabilities {
 };
 /// 1 for this color, 0 for all others. `orange` counts as small.
 [[nodiscard]] ColorProbabilities probabilities_of(ConeColor color);
-/// The most probable color, unknown if two are. Both sizes of orange count together, then the likelier one.
+/// The most probable color, small and big orange together; unknown if two colors are equally probable.
 [[nodiscard]] ConeColor most_probable_color(const ColorProbabilities& probabilities);
 
 /// Covariance of the measured position of a cone, in the map frame [m^2].

@@ -3,6 +3,7 @@
 
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
+#include "model/geometry.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/straight_line.hpp"
 
