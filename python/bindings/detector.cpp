@@ -315,7 +315,7 @@ mission: "trackdrive", "autocross", "acceleration" or "skidpad".
 detector: One of `methods()`.
 laps: Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
 max_age_s: Largest age of a lane that is still driven [s].
-step_m, smoothing_m, max_gap_m, default_width_m: Of the lanes in plans, see `Lane.drivable`.
+step_m, smoothing_m, max_gap_m, default_width_m: Of the lanes in plans, see `Lane.drivable`; step_m is at most 5.
 nearest, parameters, pairing, weights: Options of the detector, see `Detector`.
 Raises ValueError for an unknown mission, detector or option, for one that the mission or the detector does not use, and for
     values out of range.
