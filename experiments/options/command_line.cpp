@@ -132,11 +132,6 @@ std::optional<std::uint64_t> number_in(const std::string& text) {
     return number;
 }
 
-/// The fault of the text of a seed, or nothing.
-std::string seed_fault(const std::string& text) {
-    return number_in(text) ? "" : fmt::format("'{}' is not a non-negative integer of 64 bits", text);
-}
-
 /// The reason why a file cannot be written, or nothing.
 std::string output_fault(const std::string& file) {
     try {
@@ -308,6 +303,13 @@ CLI::Validator whole_number(std::size_t least, std::size_t most) {
     return {fault, fmt::format("in [{} - {}]", least, most)};
 }
 
+CLI::Validator seed_number() {
+    const auto fault = [](const std::string& text) -> std::string {
+        return number_in(text) ? "" : fmt::format("'{}' is not a non-negative integer of 64 bits", text);
+    };
+    return {fault, ""};
+}
+
 std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option,
                                                        std::span<const std::string> texts) {
     std::vector<std::optional<std::size_t>> sizes;
@@ -377,9 +379,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         "it is a third");
     command.add_flag("--confidence", options.with_confidence,
                      "scenes carry simulated confidences, lower ones for false positives");
-    command.add_option("--seed", options.seed, "base seed")
-        ->check(CLI::Validator(seed_fault, ""))
-        ->capture_default_str();
+    command.add_option("--seed", options.seed, "base seed")->check(seed_number())->capture_default_str();
 }
 
 RldParameters ParameterSource::load() const {

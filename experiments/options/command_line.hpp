@@ -40,6 +40,9 @@ inline constexpr std::size_t kMaxCones = 100'000;
 /// Accepts the texts of whole numbers in a range. CLI::Range would report any other text as out of range.
 [[nodiscard]] CLI::Validator whole_number(std::size_t least, std::size_t most);
 
+/// Accepts the texts of seeds. CLI11 would let negative numbers wrap around.
+[[nodiscard]] CLI::Validator seed_number();
+
 /// Sizes of cone sets as an option gives them: a number of cones, or `all` for all visible ones (absent).
 /// Throws InvalidInput if a text is neither, or a size is there twice.
 [[nodiscard]] std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option,

@@ -315,7 +315,7 @@ RaceCourse circuit(const Track& track) {
     for (const auto* const side : {&track.left, &track.right}) {
         const ConeColor color = side == &track.left ? ConeColor::blue : ConeColor::yellow;
         for (const std::size_t i : *side) {
-            if (course.cones[i].color != ConeColor::orange) course.cones[i].color = color;
+            if (!is_orange(course.cones[i].color)) course.cones[i].color = color;
         }
     }
     course.closed = true;

@@ -95,7 +95,9 @@ class BackendsStudy : public SolveStudy {
                         "columns in other orders")
             ->check(whole_number(0, 1000))
             ->capture_default_str();
-        command.add_option("--seed", solves_.seed, "of the permutations")->capture_default_str();
+        command.add_option("--seed", solves_.seed, "of the permutations")
+            ->check(seed_number())
+            ->capture_default_str();
         add_limits_option(
             command, "--gap-limits", solves_.gap_limits_ms,
             "time limits [ms], ascending: each scene is solved again under each, for the gap over time");

@@ -42,7 +42,9 @@ void add_cross_check_command(CLI::App& study) {
     what.add_option("--replay", options->replay, "*.case.json to judge again");
     what.require_option(1);
     command.add_option("--scenes", drawn.scenes, "*.scenes.jsonl: three of ten cases are drawn from it");
-    command.add_option("--seed", drawn.seed, "seed of the cases")->capture_default_str();
+    command.add_option("--seed", drawn.seed, "seed of the cases")
+        ->check(seed_number())
+        ->capture_default_str();
     command.add_option("--first", drawn.first, "number of the first case, to cut a run into parts")
         ->capture_default_str();
     command.add_option("--cases", drawn.cases, "number of cases, with those of a stopped run")

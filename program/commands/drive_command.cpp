@@ -291,7 +291,7 @@ void add_drive_command(CLI::App& program) {
     command.add_option("--method", options->detector,
                        "only lanes of this method; with --follow the detector, front-warm by default");
     add_number_option(command, "--step", options->drivable.step_m, 0.01, 100.0,
-                      "distance from point to point [m], in [0.01, 100]");
+                      "distance from point to point [m], in [0.01, 100]; with --follow at most 5");
     add_follow_options(command, *options);
     command.callback([options] { options->frames.empty() ? drive_all(*options) : follow_frames(*options); });
 }

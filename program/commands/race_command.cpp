@@ -95,6 +95,10 @@ std::vector<FoldedCourse> courses_of(const Options& options, std::optional<Missi
         if (options.tracks.empty()) courses.push_back({mission_course(*mission)});
         for (const std::string& spec : options.tracks) {
             for (const Track& track : load_tracks_aloud(spec)) {
+                if (track.closed) {
+                    throw InvalidInput("--tracks", fmt::format("'{}' is a circuit, no course of {}",
+                                                               track.name, options.mission));
+                }
                 courses.push_back({mission_course(*mission, track)});
             }
         }
@@ -365,7 +369,9 @@ void add_race_command(CLI::App& program) {
                       "noise of a cone that is added for each metre of its distance [m]");
     add_number_option(command, "--pose-time-s", options->race.sight.pose_time_s, 0.0, 60.0,
                       "correlation time of the pose error [s]; 0: drawn in each frame");
-    command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
+    command.add_option("--seed", options->seeds, "seeds; each gives a race")
+        ->delimiter(',')
+        ->check(seed_number());
     add_number_option(command, "--latency-ms", options->latency_ms, 0.0, 1000.0,
                       "simulated time from a frame to its path");
     command.add_flag("--colors", options->race.sight.with_color, "cones have their colour");

@@ -113,6 +113,8 @@ TEST_F(RaceCommand, BadInputIsRefusedInOneLine) {
     expect_refused(kidney + "--fp 1", {"fp"});
     expect_refused(kidney + "--fp 0.3,0.3", {"fp", "twice"});
     expect_refused(kidney + "--seed 1,1", {"--seed", "twice"});
+    expect_refused(kidney + "--seed -1", {"--seed", "-1"});
+    expect_refused(kidney + "--mission acceleration", {"--tracks", "kidney", "acceleration"});
     expect_refused(kidney + "--mission autocross --laps 2", {"--laps", "autocross"});
     expect_refused(kidney + "--fault rain", {"--fault"});
     expect_refused(kidney + "--speed 0", {"--speed"});
