@@ -1,6 +1,7 @@
 #include "model/geometry.hpp"
 
 #include <cassert>
+#include <numbers>
 
 namespace conelane {
 namespace {
@@ -70,10 +71,9 @@ double interior_angle(const Point& a, const Point& middle, const Point& b) {
 }
 
 double turning_angle(const Point& before, const Point& after) {
-    const double sine = cross(before, after);
-    const double cosine = before.dot(after);
-    // atan2(-0.0, negative) is -pi, which is outside the half-open range.
-    return sine == 0.0 ? std::atan2(0.0, cosine) : std::atan2(sine, cosine);
+    const double angle = std::atan2(cross(before, after), before.dot(after));
+    // A sine of -0 or nearly 0 may give -pi, which is outside the half-open range.
+    return angle <= -std::numbers::pi ? std::numbers::pi : angle;
 }
 
 double polyline_length_m(std::span<const Point> vertices, bool closed) {

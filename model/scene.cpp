@@ -66,7 +66,8 @@ ConeColor most_probable_color(const ColorProbabilities& probabilities) {
         {{probabilities.unknown, ConeColor::unknown},
          {probabilities.blue, ConeColor::blue},
          {probabilities.yellow, ConeColor::yellow},
-         {probabilities.orange + probabilities.big_orange, ConeColor::orange}}};
+         {probabilities.orange + probabilities.big_orange,
+          probabilities.big_orange > probabilities.orange ? ConeColor::big_orange : ConeColor::orange}}};
     const auto best = std::ranges::max_element(labels, {}, &std::pair<double, ConeColor>::first);
     const auto is_best = [&](const auto& label) { return label.first == best->first; };
     return std::ranges::count_if(labels, is_best) > 1 ? ConeColor::unknown : best->second;

@@ -95,7 +95,7 @@ Course make_course(const Track& track, const SceneOptions& options) {
     if (options.with_color) {
         const auto paint = [&](const std::vector<std::size_t>& side, ConeColor color) {
             for (const std::size_t index : side) {
-                if (course.cones[index].color != ConeColor::orange) course.cones[index].color = color;
+                if (!is_orange(course.cones[index].color)) course.cones[index].color = color;
             }
         };
         paint(track.left, ConeColor::blue);

@@ -312,7 +312,7 @@ mission: "trackdrive", "autocross", "acceleration" or "skidpad".
 detector: One of `methods()`.
 laps: Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
 max_age_s: Largest age of a lane that is still driven [s].
-step_m, smoothing_m, max_gap_m, default_width_m: Of the lanes in plans, see `Lane.drivable`.
+step_m, smoothing_m, max_gap_m, default_width_m: Of the lanes in plans, see `Lane.drivable`; step_m is at most 5.
 nearest, parameters, pairing, weights: Options of the detector, see `Detector`.
 Raises ValueError for an unknown mission, detector or option, for one that the mission or the detector does not use, and for
     values out of range.
@@ -343,7 +343,7 @@ The plan of the next frame.
 cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
 pose: (3,), the car in a fixed map: x, y [m] and yaw [rad].
 time_s: Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
-    nothing: its plan is the last plan, with the state "bridging" if the frame is older.
+    nothing: its plan is the last plan, with the state "bridging" unless the frame is the same.
 ids: (N,), distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised
     by its place.
 colors: (N,), as in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on

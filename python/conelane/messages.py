@@ -47,14 +47,16 @@ class Cones(NamedTuple):
 
     @property
     def labels(self) -> NDArray[np.uint8]:
-        """Codes of `Color` of shape (N,): the most probable ones, big orange cones with the small ones, and unknown
-        where two are equally probable."""
+        """Codes of `Color` of shape (N,): the most probable ones, unknown where two are equally probable. Both sizes of
+        orange count together, then the likelier one."""
         if self.colors.ndim == 1:
             return self.colors.astype(np.uint8)
         of_labels = np.column_stack([self.colors[:, :3], self.colors[:, 3:].sum(axis=1)])
         best = of_labels.max(axis=1, keepdims=True)
         is_tie = (of_labels == best).sum(axis=1) > 1
-        return np.where(is_tie, int(Color.unknown), of_labels.argmax(axis=1)).astype(np.uint8)
+        most = of_labels.argmax(axis=1)
+        most += (most == Color.orange) & (self.colors[:, 4] > self.colors[:, 3])
+        return np.where(is_tie, int(Color.unknown), most).astype(np.uint8)
 
 
 def _field(message: Any, path: str) -> Any:

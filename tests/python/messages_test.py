@@ -140,8 +140,8 @@ class PacSim(unittest.TestCase):
         self.assertEqual(messages.from_pacsim([twice, unseen]).colors.tolist(), [Color.yellow, Color.unknown])
 
     def test_the_label_of_a_tie_is_unknown(self):
-        cones = messages.Cones(np.zeros((2, 2)), np.array([[0, 0.5, 0.5, 0, 0], [0, 0.2, 0.2, 0.3, 0.3]]))
-        self.assertEqual(cones.labels.tolist(), [Color.unknown, Color.orange])
+        cones = messages.Cones(np.zeros((2, 2)), np.array([[0, 0.5, 0.5, 0, 0], [0, 0.3, 0.2, 0.2, 0.3]]))
+        self.assertEqual(cones.labels.tolist(), [Color.unknown, Color.big_orange])
 
     def test_probabilities_that_are_invalid(self):
         for wrong in (-0.1, float("nan")):

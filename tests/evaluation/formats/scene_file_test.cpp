@@ -90,7 +90,7 @@ TEST_F(SceneFileTest, ProbabilitiesOfColorsStandBesideTheLabelOrGiveIt) {
     const std::vector<Cone>& cones = read.front().scene.cones;
     EXPECT_EQ(cones[0].color, ConeColor::yellow);
     EXPECT_EQ(cones[0].probabilities(), (ColorProbabilities{0.25, 0.5, 0.125, 0.125, 0.0}));
-    EXPECT_EQ(cones[1].color, ConeColor::orange);
+    EXPECT_EQ(cones[1].color, ConeColor::big_orange);
     EXPECT_EQ(cones[2].color, ConeColor::unknown);  // blue and yellow are equally probable
     EXPECT_FALSE(cones[3].color_probabilities.has_value());
     EXPECT_EQ(cones[3].probabilities(), (ColorProbabilities{0.0, 1.0, 0.0, 0.0, 0.0}));
