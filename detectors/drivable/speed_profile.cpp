@@ -42,6 +42,7 @@ std::vector<SpeedPoint> speed_profile(const DrivableLane& path, const VehicleLim
     std::vector<SpeedPoint> profile(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double bend_1pm = std::abs(points[i].curvature_1pm);
+        if (!std::isfinite(bend_1pm)) throw InvalidInput("curvature_1pm", "must be finite");
         const double in_bend_mps = std::sqrt(limits.a_lateral_mps2 / std::max(bend_1pm, 1e-12));
         profile[i].s_m = points[i].s_m;
         profile[i].v_mps = points[i].s_m < task.stop_at_m ? std::min(limits.v_max_mps, in_bend_mps) : 0.0;
@@ -66,9 +67,11 @@ std::vector<SpeedPoint> speed_profile(const DrivableLane& path, const VehicleLim
     for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
         SpeedPoint& here = profile[i];
         SpeedPoint& next = profile[i + 1];
-        const double step_m = next.s_m - here.s_m;
+        const bool stops = here.s_m < task.stop_at_m && task.stop_at_m < next.s_m;
+        const double step_m = (stops ? task.stop_at_m : next.s_m) - here.s_m;
         here.a_mps2 = (next.v_mps * next.v_mps - here.v_mps * here.v_mps) / (2.0 * step_m);
-        next.t_s = here.t_s + 2.0 * step_m / (here.v_mps + next.v_mps);
+        next.t_s = stops ? std::numeric_limits<double>::infinity()
+                         : here.t_s + 2.0 * step_m / (here.v_mps + next.v_mps);
     }
     return profile;
 }

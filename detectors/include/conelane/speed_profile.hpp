@@ -25,14 +25,14 @@ struct SpeedTask {
 struct SpeedPoint {
     double s_m = 0.0;
     double v_mps = 0.0;
-    double a_mps2 = 0.0;  ///< along the car, constant up to the next point
+    double a_mps2 = 0.0;  ///< along the car, constant up to the next point or the stop
     double t_s = 0.0;     ///< since the first point; infinite behind a stop
 };
 
 /// The fastest speeds along an open path: a limit by curvature, a pass forward for driving, a pass backward
 /// for braking. If the first speed is below `v_now_mps`, the car is too fast and has to brake at once.
-/// One point for each of the path. Throws InvalidInput naming a limit that is not positive and finite, or a
-/// task that is negative or NaN.
+/// One point for each of the path. Throws InvalidInput naming a limit that is not positive and finite, a
+/// task that is negative or NaN, or a curvature that is not finite.
 [[nodiscard]] std::vector<SpeedPoint> speed_profile(const DrivableLane& path,
                                                     const VehicleLimits& limits = {},
                                                     const SpeedTask& task = {});

@@ -58,11 +58,23 @@ TEST(SpeedProfile, StopsBetweenTwoPointsAndCountsTheTime) {
     EXPECT_TRUE(speed_profile({}).empty());
 }
 
+TEST(SpeedProfile, BrakesToAStopBetweenTwoPoints) {
+    for (const double stop_m : {0.5, 1.01, 2.5}) {
+        const auto profile = speed_profile(path([](double) { return 0.0; }), {}, {3.0, stop_m});
+        double square = std::pow(profile.front().v_mps, 2);
+        std::size_t i = 0;
+        for (; profile[i].s_m < stop_m; ++i)
+            square += 2.0 * profile[i].a_mps2 * (std::min(profile[i + 1].s_m, stop_m) - profile[i].s_m);
+        EXPECT_NEAR(square, 0.0, 1e-9) << stop_m;
+    }
+}
+
 TEST(SpeedProfile, RefusesWhatIsNoLimit) {
     EXPECT_THROW((void)speed_profile(bends(), {.a_drive_mps2 = 0.0}), InvalidInput);
     EXPECT_THROW((void)speed_profile(bends(), {.v_max_mps = std::nan("")}), InvalidInput);
     EXPECT_THROW((void)speed_profile(bends(), {}, {.v_now_mps = -1.0}), InvalidInput);
     EXPECT_THROW((void)speed_profile(bends(), {}, {.stop_at_m = std::nan("")}), InvalidInput);
+    EXPECT_THROW((void)speed_profile(path([](double) { return std::nan(""); })), InvalidInput);
 }
 
 }  // namespace
