@@ -222,17 +222,15 @@ ConeId ConeMemory::given_id(ConeId own) const {
 }
 
 ConeColor color_of(const ConeMemory::RememberedCone& cone) {
-    ConeColor best = ConeColor::unknown;
-    int most = 0;
-    for (const ConeColor color :
-         {ConeColor::big_orange, ConeColor::orange, ConeColor::blue, ConeColor::yellow}) {
-        const int count = cone.colors[static_cast<std::size_t>(color)];
-        if (count > most) {
-            most = count;
-            best = color;
-        }
-    }
-    return best;
+    const auto seen = [&](ConeColor color) { return cone.colors[static_cast<std::size_t>(color)]; };
+    const int big = seen(ConeColor::big_orange);
+    const int small = seen(ConeColor::orange);
+    const std::array<std::pair<int, ConeColor>, 3> counts{
+        {{big + small, big >= small ? ConeColor::big_orange : ConeColor::orange},
+         {seen(ConeColor::blue), ConeColor::blue},
+         {seen(ConeColor::yellow), ConeColor::yellow}}};
+    const auto most = std::ranges::max_element(counts, {}, &std::pair<int, ConeColor>::first);
+    return most->first > 0 ? most->second : ConeColor::unknown;
 }
 
 }  // namespace conelane

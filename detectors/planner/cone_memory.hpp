@@ -69,7 +69,7 @@ class ConeMemory {
     double widest_rad_ = 0.0;  ///< and the widest bearing of a cone
 };
 
-/// The color that was seen most often; unknown if none was seen.
+/// The color that was seen most often, both sizes of orange together; unknown if none was seen.
 [[nodiscard]] ConeColor color_of(const ConeMemory::RememberedCone& cone);
 
 }  // namespace conelane

@@ -131,7 +131,7 @@ void CourseMemory::append(const DrivablePoint& point, const ConeMemory& cones) {
 
 /// The lane ahead of the car runs where the car has been, in the same direction.
 void CourseMemory::close(const DrivableLane& lane) {
-    const DrivablePoint& here = points_.back();
+    const DrivablePoint here = points_.back();  // a copy, since points are erased
     for (std::size_t i = 0; i < points_.size(); ++i) {
         if (here.s_m - points_[i].s_m < settings_.min_length_m) return;
         const auto near = [&](const DrivablePoint& old, const DrivablePoint& now) {

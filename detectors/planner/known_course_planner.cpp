@@ -1,5 +1,6 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/known_gates.hpp"
+#include "detectors/planner/lane_stretch.hpp"
 #include "detectors/planner/planners.hpp"
 
 #include <utility>
@@ -95,11 +96,9 @@ struct Finished {
 struct Run {
     std::variant<Searching, Tracking, Finished> state;
     SeenCones seen;
-    std::optional<double> time_s;  ///< of the last frame
+    std::optional<Frame> frame;  ///< the last one
     Pose first_pose;
-    Pose last_pose;
-    std::size_t last_count = 0;  ///< of cones
-    bool began = false;          ///< a lane was given
+    bool began = false;  ///< a lane was given
     Plan last;
 
     /// Null while searching.
@@ -117,9 +116,7 @@ struct Run {
 DrivablePoint in_map(DrivablePoint point, const Registration& registration, double s_m, double half_width_m) {
     point.s_m = s_m;
     point.position = registration.to_map(point.position);
-    point.heading_rad =
-        std::remainder(point.heading_rad + registration.course.yaw_rad, 2.0 * std::numbers::pi);
-    if (point.heading_rad <= -std::numbers::pi) point.heading_rad = std::numbers::pi;
+    point.heading_rad = turn_rad(0.0, point.heading_rad + registration.course.yaw_rad);
     point.width_left_m = point.width_right_m = half_width_m;
     return point;
 }
@@ -180,16 +177,14 @@ class KnownCoursePlanner final : public Planner {
 Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limits) {
     const Deadline deadline(limits.time_limit_ms);
     const Scene scene = checked_scene(frame, limits);
-    if (run_.time_s && frame.time_s <= *run_.time_s) {
+    if (run_.frame && frame.time_s <= run_.frame->time_s) {
         Plan plan = run_.last;
         // The same frame again has the same answer; another one says nothing new.
-        const bool is_same = frame.time_s == *run_.time_s && frame.pose.position == run_.last_pose.position &&
-                             frame.cones.size() == run_.last_count;
-        if (!is_same && plan.state == PlanState::following) plan.state = PlanState::bridging;
+        if (!is_same(frame, *run_.frame) && plan.state == PlanState::following)
+            plan.state = PlanState::bridging;
         return plan;
     }
-    if (!run_.time_s) run_.first_pose = run_.last_pose = frame.pose;
-    run_.time_s = frame.time_s;
+    if (!run_.frame) run_.first_pose = frame.pose;
     run_.seen.observe(frame);
     const SeenView view = view_of(frame);
     if (Tracking* const tracking = run_.tracking()) {
@@ -208,8 +203,7 @@ Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limit
         plan_unregistered(std::get<Searching>(run_.state), plan, scene, deadline);
         plan.phase = shape().phase(shape().start_x_m);
     }
-    run_.last_pose = frame.pose;
-    run_.last_count = frame.cones.size();
+    run_.frame = frame;
     run_.last = plan;
     return plan;
 }
@@ -335,7 +329,8 @@ double KnownCoursePlanner::nearest_on_route(const Point& place, double from_s_m,
 /// Moves the car on along the route. Returns whether it has crossed the last line.
 bool KnownCoursePlanner::advance(Tracking& tracking, const Pose& pose) const {
     const Point place = tracking.on_route(pose.position);
-    const double driven_m = std::min((pose.position - run_.last_pose.position).norm(), kMaxDriven_m);
+    const Point& before = run_.frame ? run_.frame->pose.position : pose.position;
+    const double driven_m = std::min((pose.position - before).norm(), kMaxDriven_m);
     tracking.at_m = nearest_on_route(place, tracking.at_m - kWindow_m - kWindowShare * driven_m,
                                      tracking.at_m + kWindow_m + (1.0 + kWindowShare) * driven_m);
     tracking.off_route_m = (shape().at(tracking.at_m).position - place).norm();
@@ -433,13 +428,12 @@ void KnownCoursePlanner::plan_registered(Tracking& tracking, Plan& plan, double 
     if (!is_old) tracking.supported_at_m = tracking.at_m;
     if (is_finished || tracking.at_m > shape().finish_s_m - shape().max_ahead_m) find_closing_cones(tracking);
     plan.stop = is_finished;
-    if (plan.age_s > options_.max_age_s || tracking.off_route_m > kMaxOffRoute_m) {
+    const bool is_off = tracking.off_route_m > kMaxOffRoute_m;  // then no cones fit, so this is the reason
+    if (plan.age_s > options_.max_age_s || is_off) {
         plan.state = is_finished ? PlanState::finished : PlanState::lost;
-        if (!is_finished)
-            plan.reason = plan.age_s > options_.max_age_s ? "too few cones fit the course"
-                                                          : "the car is off the course";
+        if (!is_finished) plan.reason = is_off ? "the car is off the course" : "too few cones fit the course";
         // Behind the last line there may be no cone: what is left of the lane is straight on.
-        if (!is_finished || tracking.off_route_m > kMaxOffRoute_m) return;
+        if (!is_finished || is_off) return;
     } else {
         plan.state = is_finished ? PlanState::finished : is_old ? PlanState::bridging : PlanState::following;
     }
@@ -456,6 +450,7 @@ void KnownCoursePlanner::plan_registered(Tracking& tracking, Plan& plan, double 
 void KnownCoursePlanner::plan_unregistered(const Searching& searching, Plan& plan, const Scene& scene,
                                            const Deadline& deadline) {
     plan.state = run_.began ? PlanState::lost : PlanState::searching;
+    if (run_.began) plan.reason = "the course is not found among the cones";
     const double driven_m = (scene.pose.position - run_.first_pose.position).norm();
     const double left_m = kUnregistered_m - driven_m;
     if (left_m <= 0.0 || scene.cones.size() < kMinDrawnTogether) return;
@@ -477,6 +472,7 @@ void KnownCoursePlanner::plan_unregistered(const Searching& searching, Plan& pla
         lane.trusted_m = lane.length_m = lane.points.back().s_m;
     }
     plan.state = PlanState::following;
+    plan.reason = {};
     plan.safe_m = lane.length_m;
     plan.lane = std::move(lane);
     run_.began = true;

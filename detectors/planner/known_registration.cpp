@@ -27,6 +27,7 @@ constexpr std::size_t kMaxCones = 600;
 constexpr double kMaxDistance_m = 45.0;  ///< cones of a map that are farther from the car are left out
 constexpr double kSureShare = 0.8;       ///< of range and bearing: a cone within is in view
 constexpr double kBlind_m = 2.0;
+constexpr double kMaxBeyond = 1.2;  ///< of the second farthest cone: a farther one may be false
 
 // The search over a grid of poses.
 constexpr double kCell_m = 0.25;
@@ -114,12 +115,16 @@ bool SeenView::covers(const Point& place) const {
 
 SeenView view_of(const Frame& frame) {
     SeenView view{frame.pose};
+    double second_m = 0.0;
     for (const Cone& cone : frame.cones) {
         const double ahead_m = frame.pose.ahead_m(cone.position);
         const double left_m = frame.pose.left_m(cone.position);
-        view.range_m = std::max(view.range_m, std::hypot(ahead_m, left_m));
+        const double distance_m = std::hypot(ahead_m, left_m);
+        second_m = std::max(second_m, std::min(view.range_m, distance_m));
+        view.range_m = std::max(view.range_m, distance_m);
         view.bearing_rad = std::max(view.bearing_rad, std::abs(std::atan2(left_m, ahead_m)));
     }
+    view.range_m = std::min(view.range_m, kMaxBeyond * second_m);
     return view;
 }
 

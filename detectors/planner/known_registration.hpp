@@ -16,7 +16,7 @@ struct SeenCone {
 /// The region that a frame looked at, estimated from its cones.
 struct SeenView {
     Pose pose;
-    double range_m = 0.0;      ///< distance of the farthest cone
+    double range_m = 0.0;      ///< distance of the farthest cone, if it is not far behind all others
     double bearing_rad = 0.0;  ///< bearing of the cone farthest from the heading
 
     /// Whether a cone at this place would certainly be in view.

@@ -151,15 +151,15 @@ std::vector<DrivablePoint> leading_to(const DrivablePoint& beginning, const Driv
 }  // namespace
 
 double turn_rad(double from_rad, double to_rad) {
-    return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+    const double rad = std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+    return rad <= -std::numbers::pi ? std::numbers::pi : rad;
 }
 
 DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share) {
     DrivablePoint point;
     point.s_m = std::lerp(a.s_m, b.s_m, share);
     point.position = a.position + share * (b.position - a.position);
-    point.heading_rad = std::remainder(a.heading_rad + share * turn_rad(a.heading_rad, b.heading_rad),
-                                       2.0 * std::numbers::pi);
+    point.heading_rad = turn_rad(0.0, a.heading_rad + share * turn_rad(a.heading_rad, b.heading_rad));
     point.curvature_1pm = std::lerp(a.curvature_1pm, b.curvature_1pm, share);
     point.width_left_m = std::lerp(a.width_left_m, b.width_left_m, share);
     point.width_right_m = std::lerp(a.width_right_m, b.width_right_m, share);

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-/// The turn from one heading to another, in [-pi, pi].
+/// The turn from one heading to another, in (-pi, pi].
 [[nodiscard]] double turn_rad(double from_rad, double to_rad);
 
 [[nodiscard]] inline Pose pose_of(const DrivablePoint& point) {

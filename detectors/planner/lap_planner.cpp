@@ -55,8 +55,7 @@ struct Run {
     LaneChoice choice;
     LapCounter counter;
     CourseMemory course;
-    std::optional<double> time_s;
-    Pose pose;  ///< of that time
+    std::optional<Frame> frame;  ///< the last one
     Plan last;
     bool started = false;  ///< a lane was driven
 };
@@ -104,17 +103,15 @@ class LapPlanner final : public Planner {
 
 Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     static_cast<void>(checked_scene(frame, limits));  // throws if the frame or a limit is invalid
-    if (run_.time_s && frame.time_s <= *run_.time_s) {
+    if (run_.frame && frame.time_s <= run_.frame->time_s) {
         // The same frame has the same answer. An older frame, or one of a clock that stands still, cannot be
         // trusted.
         Plan plan = run_.last;
-        const bool is_same = frame.time_s == *run_.time_s && frame.pose.position == run_.pose.position &&
-                             frame.pose.yaw_rad == run_.pose.yaw_rad;
-        if (!is_same && plan.state == PlanState::following) plan.state = PlanState::bridging;
+        if (!is_same(frame, *run_.frame) && plan.state == PlanState::following)
+            plan.state = PlanState::bridging;
         return plan;
     }
-    run_.time_s = frame.time_s;
-    run_.pose = frame.pose;
+    run_.frame = frame;
     if (const auto shift = run_.cones.observe(frame)) {
         run_.path.move_along(*shift);
         run_.choice.move_along(*shift);
@@ -148,7 +145,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
 /// the frame contradicts the course, if it does.
 bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, Plan& plan, double& until_m) {
     if (!run_.course.closed()) return false;
-    const DrivableLane course = run_.course.ahead(run_.pose, kChoice.known_ahead_m);
+    const DrivableLane course = run_.course.ahead(run_.frame->pose, kChoice.known_ahead_m);
     LaneTrust trust = run_.course.trust(course, run_.cones);
     if (choice.seen && !course.points.empty()) {
         const double contested = contested_m(*choice.seen, course);
@@ -175,7 +172,7 @@ bool LapPlanner::follow_course(const Choice& choice, const DrivableLane& left, P
 
 /// The path of this frame.
 void LapPlanner::keep_path(Plan& plan) {
-    run_.path.remember(plan.lane, *run_.time_s);
+    run_.path.remember(plan.lane, run_.frame->time_s);
     plan.state = PlanState::following;
     plan.safe_m = *plan.lane.trusted_m;
     run_.started = true;
@@ -202,7 +199,7 @@ void LapPlanner::choose_path(const Choice& choice, const DrivableLane& left, Pla
         if (seen) until_m = std::min(until_m, contested_m(*seen, plan.lane));
         plan.lane.trusted_m = plan.safe_m = std::min(plan.lane.trusted_m.value_or(0.0), until_m);
         plan.state = PlanState::bridging;
-        plan.age_s = *run_.time_s - run_.path.time_s();
+        plan.age_s = run_.frame->time_s - run_.path.time_s();
     } else {
         plan.state = run_.started ? PlanState::lost : PlanState::searching;
         if (run_.started) plan.reason = run_.path.why_none();
@@ -308,9 +305,12 @@ void LapPlanner::lead_out(Plan& plan) const {
     constexpr double kAtGate_m = 3.0;
     const std::optional<Pose> gate = run_.counter.end();
     if (!gate) return;
-    const double to_gate_m = -gate->ahead_m(run_.pose.position);
+    const double to_gate_m = -gate->ahead_m(run_.frame->pose.position);
     const bool is_known = !plan.lane.points.empty();
     if (is_known ? std::abs(plan.lane.length_m - to_gate_m) > kAtGate_m : to_gate_m > kAtGate_m) return;
+    const bool is_on_way = std::abs(gate->left_m(run_.frame->pose.position)) <= kChoice.max_offset_m &&
+                           gate->heading().dot(run_.frame->pose.heading()) > 0.0;
+    if (!is_known && !is_on_way) return;  // a car that is lost elsewhere stays lost
     const double from_m = is_known ? -kAtGate_m : -to_gate_m;
     const double step_m = options_.drivable.step_m;
     const double half_m = options_.drivable.default_width_m / 2.0;
@@ -318,7 +318,7 @@ void LapPlanner::lead_out(Plan& plan) const {
     for (double s_m = 0.0; from_m + s_m <= kCourse.stop_m; s_m += step_m) {
         exit.points.push_back({.s_m = s_m,
                                .position = gate->position + (from_m + s_m) * gate->heading(),
-                               .heading_rad = gate->yaw_rad,
+                               .heading_rad = turn_rad(0.0, gate->yaw_rad),
                                .width_left_m = half_m,
                                .width_right_m = half_m});
         exit.length_m = s_m;
@@ -330,7 +330,8 @@ void LapPlanner::lead_out(Plan& plan) const {
     plan.safe_m = plan.lane.trusted_m.value_or(0.0);
     if (is_known) return;
     plan.state = PlanState::bridging;
-    plan.age_s = *run_.time_s - run_.path.time_s();
+    plan.reason = {};
+    plan.age_s = run_.frame->time_s - run_.path.time_s();
 }
 
 void LapPlanner::finish(Plan& plan) const {

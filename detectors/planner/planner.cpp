@@ -70,8 +70,17 @@ Scene checked_scene(const Frame& frame, const DetectionLimits& limits) {
     return scene;
 }
 
+bool is_same(const Frame& a, const Frame& b) {
+    return a.time_s == b.time_s && a.pose.position == b.pose.position && a.pose.yaw_rad == b.pose.yaw_rad &&
+           std::ranges::equal(a.cones, b.cones, [](const Cone& one, const Cone& other) {
+               return one.id == other.id && one.position == other.position && one.color == other.color;
+           });
+}
+
 void validate_shared(const PlannerOptions& options) {
     if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "must be at least 0");
+    // A lane that is shorter than a step has no points.
+    if (options.drivable.step_m > 5.0) throw InvalidInput("step_m", "must be at most 5 in a planner");
     static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // throws if an option is out of range
 }
 

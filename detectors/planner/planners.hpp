@@ -24,6 +24,9 @@ namespace conelane {
 /// is not a number.
 [[nodiscard]] Scene checked_scene(const Frame& frame, const DetectionLimits& limits);
 
+/// Whether a frame came twice: the same time, pose and cones.
+[[nodiscard]] bool is_same(const Frame& a, const Frame& b);
+
 /// Throws InvalidInput naming an option that is invalid for every mission: max_age_s or one of `drivable`.
 void validate_shared(const PlannerOptions& options);
 

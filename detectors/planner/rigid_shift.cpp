@@ -1,8 +1,7 @@
 #include "detectors/planner/rigid_shift.hpp"
 
+#include "detectors/planner/lane_stretch.hpp"
 #include "model/geometry.hpp"
-
-#include <numbers>
 
 namespace conelane {
 namespace {
@@ -55,7 +54,7 @@ Point RigidShift::operator()(const Point& point) const {
 void move(std::span<DrivablePoint> points, const RigidShift& shift) {
     for (DrivablePoint& point : points) {
         point.position = shift(point.position);
-        point.heading_rad = std::remainder(point.heading_rad + shift.turn_rad, 2.0 * std::numbers::pi);
+        point.heading_rad = turn_rad(0.0, point.heading_rad + shift.turn_rad);
     }
 }
 

@@ -20,6 +20,7 @@ inline void expect_consistent(const Plan& plan, Mission mission, const Pose& pos
             EXPECT_TRUE(lane.points.empty());
             EXPECT_EQ(plan.safe_m, 0.0);
             EXPECT_FALSE(plan.stop);
+            EXPECT_EQ(plan.reason.empty(), plan.state == PlanState::searching);
             break;
         case PlanState::following:
             EXPECT_GE(lane.points.size(), 2U);

@@ -69,7 +69,7 @@ struct PlannerOptions {
     std::string detector = "front-warm";    ///< a name of `detectors`
     DetectorOptions detector_options = {};  ///< of that detector
     std::optional<int> laps = {};           ///< trackdrive: 10 if absent; autocross: 1. At least 1
-    DrivableOptions drivable = {};          ///< of the lanes in plans
+    DrivableOptions drivable = {};          ///< of the lanes in plans; step_m at most 5
     double max_age_s = 1.0;                 ///< an older lane is not driven; at least 0
 };
 
@@ -83,7 +83,7 @@ class Planner {
 
     /// Throws InvalidInput if the frame is invalid or the limit is NaN; the planner then stays unchanged. A
     /// frame without cones is valid. A frame that is not later than the last one changes nothing: the last
-    /// plan is returned again, as bridging instead of following if the frame is older than the last one.
+    /// plan is returned again, as bridging instead of following unless the frame is the same.
     [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
 
     /// The whole course, closed, once a lap is known; absent before that, and in missions whose course is not

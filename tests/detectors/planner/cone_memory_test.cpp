@@ -204,6 +204,7 @@ TEST(ConeMemory, ColorsAreDecidedByWhatWasSeenMost) {
     }
     EXPECT_EQ(color_of(*near(memory, {4.0, 1.75})), ConeColor::blue);
     EXPECT_EQ(color_of(*near(memory, {4.0, -1.75})), ConeColor::unknown);
+    EXPECT_EQ(color_of({.colors = {0, 4, 0, 2, 3}}), ConeColor::big_orange);
 }
 
 TEST(ConeMemory, IsBoundedByItsSettings) {

@@ -100,6 +100,19 @@ TEST(KnownCoursePlanner, SkidpadIsDrivenInOrderToTheStop) {
     }
 }
 
+TEST(KnownCoursePlanner, AFarFalseConeInTheFirstFrameHidesNoCourse) {
+    for (const double far_m : {30.0, 60.0, 200.0}) {
+        const auto planner = planner_of(Mission::acceleration);
+        Car car(Mission::acceleration, 1);
+        for (int i = 0; i < 30; ++i) {
+            Frame frame = car.next();
+            const Point far = frame.pose.position + far_m * frame.pose.heading();
+            if (i == 0) frame.cones.push_back({kNoId, far});
+            EXPECT_EQ(planner->update(frame, kNoLimit).state, PlanState::following) << far_m << " m, " << i;
+        }
+    }
+}
+
 TEST(KnownCoursePlanner, AccelerationStopsBehindTheLineAndNeverBefore) {
     for (unsigned seed = 0; seed < 5; ++seed) {
         const auto planner = planner_of(Mission::acceleration);

@@ -3,6 +3,7 @@
 
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
+#include "model/geometry.hpp"
 #include "tests/support/drivable_courses.hpp"
 #include "tests/support/straight_line.hpp"
 
@@ -20,6 +21,11 @@ TEST(LaneFoot, IsTheNearestPlaceThatRunsWithTheCar) {
     EXPECT_FALSE(foot_on(lane, {{3.2, 1.0}, std::numbers::pi}, 0.0, 10.0)) << "the car drives against it";
     EXPECT_NEAR(foot_on(lane, {{3.2, 1.0}, 0.0}, 5.0, 10.0)->s_m, 5.0, 0.5 + 1e-9)
         << "within what is asked for, to a segment";
+}
+
+TEST(Turn, IsInTheHalfOpenRange) {
+    EXPECT_EQ(turn_rad(0.0, -std::numbers::pi), std::numbers::pi);
+    EXPECT_EQ(turning_angle({1.0, 0.0}, {-1.0, -1e-20}), std::numbers::pi);
 }
 
 TEST(Stretch, IsCutToStepsAndGoesRoundAClosedLane) {

@@ -177,6 +177,9 @@ TEST_P(PlannerContract, FramesThatComeTwiceAreAnsweredTwiceAndOldOnesAreFlagged)
         const Plan plan = update(*planner, frame(i));
         expect_same_plan(plan, expected[static_cast<std::size_t>(i)]);
         expect_same_plan(planner->update(frame(i), kNoTimeLimit), plan);
+        Frame other = frame(i);
+        other.cones.front().position.x() += 0.3;
+        EXPECT_NE(planner->update(other, kNoTimeLimit).state, PlanState::following) << "a clock that stands";
         if (i < 3) continue;
         const Plan late = planner->update(frame(i - 3), kNoTimeLimit);
         EXPECT_NE(late.state, PlanState::following);
@@ -303,7 +306,8 @@ TEST(PlannerOptions, ThatAreOutOfRangeOrNotUsedAreRefused) {
         EXPECT_EQ(refused({.mission = mission, .detector = "magic"}), "detector");
         EXPECT_EQ(refused({.mission = mission, .detector = "clc", .detector_options = {.weights = "w.json"}}),
                   "weights");
-        EXPECT_EQ(refused({.mission = mission, .drivable = {.step_m = 0.0}}), "step_m");
+        for (const double step_m : {0.0, 5.1, kNaN, kInfinity})
+            EXPECT_EQ(refused({.mission = mission, .drivable = {.step_m = step_m}}), "step_m");
         EXPECT_EQ(refused({.mission = mission, .max_age_s = -0.1}), "max_age_s");
         EXPECT_EQ(refused({.mission = mission, .max_age_s = kNaN}), "max_age_s");
         EXPECT_EQ(refused({.mission = mission, .max_age_s = 0.0}), "accepted");

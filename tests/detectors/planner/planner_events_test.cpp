@@ -141,6 +141,20 @@ TEST(PlannerEvent, AnAutocrossEndsAtAFinishElsewhere) {
     }
 }
 
+TEST(PlannerEvent, ACarThatIsLostBesideAFinishStaysLost) {
+    const DrivenCourse course = tests::from_gate_to_gate();
+    for (const bool turned : {false, true}) {
+        const auto planner = make_planner({.mission = Mission::autocross});
+        (void)drive(*planner, course, course.finish_m - 4.0, {.with_color = true}, -6.0);
+        Pose pose = course.pose(course.finish_m - 1.0);
+        if (turned) pose.yaw_rad += std::numbers::pi;
+        if (!turned) pose.position += 10.0 * Point(-pose.heading().y(), pose.heading().x());
+        const Plan plan = planner->update({60.0, pose, {}}, kNoTimeLimit);
+        EXPECT_EQ(plan.state, PlanState::lost);
+        EXPECT_TRUE(plan.lane.points.empty());
+    }
+}
+
 // Nothing tells a second gate of a circuit from a finish but what is behind it.
 TEST(PlannerEvent, AGateThatIsPassedOnACircuitEndsNothing) {
     DrivenCourse course = tests::oval(1);

@@ -562,6 +562,12 @@ TEST(Courses, OfTheRulesHaveTheMeasuresOfTheRules) {
     }
 }
 
+TEST(Courses, BigConesKeepTheirColor) {
+    Track track = load_tracks("generated:kidney").front();
+    track.cones[track.left[0]].color = ConeColor::big_orange;
+    EXPECT_EQ(circuit(track).cones[track.left[0]].color, ConeColor::big_orange);
+}
+
 TEST(Courses, AnOpenTrackIsNoCircuit) {
     Track track = load_tracks("generated:kidney").front();
     track.closed = false;
