@@ -346,7 +346,7 @@ The plan of the next frame.
 cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
 pose: (3,), the car in a fixed map: x, y [m] and yaw [rad].
 time_s: Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
-    nothing: its plan is the last plan, with "bridging" instead of "following" unless it is the last frame again.
+    nothing: its plan is the last plan, with the state "bridging" unless the frame is the same.
 ids: (N,), distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised
     by its place.
 colors: As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both

@@ -66,7 +66,6 @@ TEST(SpeedProfile, BrakesToAStopBetweenTwoPoints) {
         for (; profile[i].s_m < stop_m; ++i)
             square += 2.0 * profile[i].a_mps2 * (std::min(profile[i + 1].s_m, stop_m) - profile[i].s_m);
         EXPECT_NEAR(square, 0.0, 1e-9) << stop_m;
-        EXPECT_TRUE(std::isinf(profile[i].t_s)) << stop_m;
     }
 }
 

@@ -308,7 +308,6 @@ TEST(PlannerOptions, ThatAreOutOfRangeOrNotUsedAreRefused) {
                   "weights");
         for (const double step_m : {0.0, 5.1, kNaN, kInfinity})
             EXPECT_EQ(refused({.mission = mission, .drivable = {.step_m = step_m}}), "step_m");
-        EXPECT_EQ(refused({.mission = mission, .drivable = {.step_m = 5.0}}), "accepted");
         EXPECT_EQ(refused({.mission = mission, .max_age_s = -0.1}), "max_age_s");
         EXPECT_EQ(refused({.mission = mission, .max_age_s = kNaN}), "max_age_s");
         EXPECT_EQ(refused({.mission = mission, .max_age_s = 0.0}), "accepted");
