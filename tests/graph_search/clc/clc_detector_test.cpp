@@ -328,14 +328,13 @@ TEST(ClcDetector, NoneOnlyWhereEverythingWasSearched) {
     EXPECT_TRUE(one_pair.enumeration->complete) << "of the pair that was tried";
     EXPECT_EQ(make_clc_detector({})->detect(beside, tests::kNoTimeLimit).status, LaneStatus::found);
 
-    // The nearest cones of each are those of its own boundary's doubles, from which no lane goes on.
+    // The nearest cone of each is in the middle of the lane.
     Scene crowded = tests::straight_lane(4);
+    for (std::size_t i = 0; i < 4; ++i)
+        crowded.cones.push_back({static_cast<ConeId>(2000 + i), {crowded.cones[2 * i].position.x(), 0.0}});
     options = {};
     options.nearest_neighbours = 1;
-    for (std::size_t i = 8; i > 0; --i) {
-        const Cone& cone = crowded.cones[i - 1];
-        crowded.cones.push_back({static_cast<ConeId>(2000 + i), cone.position + Point(0.0, 0.2)});
-    }
+    options.starting_pairs = 100;
     const LaneAnswer near_only = make_clc_detector(options)->detect(crowded, tests::kNoTimeLimit);
     EXPECT_EQ(near_only.status, LaneStatus::stopped);
     EXPECT_EQ(near_only.stopped_by, StopReason::iterations);
