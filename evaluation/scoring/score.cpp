@@ -241,19 +241,48 @@ class Truth {
         double length_m = 0.0;
         bool leaves = false;
     };
+    /// Walks the line in short steps: what lies between two of its points counts too. The foot of a step is
+    /// looked for near that of the step before, as in boundary_divergence, so a leap, a way back or the
+    /// neighbouring stretch of a hairpin leave the true line.
     static Follow follow_of(std::span<const Point> line, std::span<const Point> truth) {
+        constexpr double kStep_m = 0.1;
+        constexpr double kRounding_m = 1e-6;
         Follow follow;
         if (truth.size() < 2) return {0.0, true};
-        const double length_m = polyline_length_m(truth);
+        std::vector<double> arc_m{0.0};
+        for (std::size_t i = 1; i < truth.size(); ++i)
+            arc_m.push_back(arc_m.back() + (truth[i] - truth[i - 1]).norm());
         const Point first_way = (truth[1] - truth[0]).normalized();
-        for (const Point& point : line) {
-            const PolylineFoot foot = foot_on_polyline(point, truth);
-            if (foot.arc_length_m >= length_m) return {length_m, false};  // beyond the known part
-            // Before the beginning of the true line, only the lateral offset counts.
-            const double off_m =
-                foot.arc_length_m > 0.0 ? foot.distance_m : std::abs(cross(first_way, point - truth[0]));
-            if (off_m > kOffCentreLine_m) return {follow.length_m, true};
-            follow.length_m = std::max(follow.length_m, foot.arc_length_m);
+        double least_m = 0.0;
+        double most_m = kFirstFootAhead_m;
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            const Point& from = line[i == 0 ? 0 : i - 1];
+            const Point way = line[i] - from;
+            const double way_m = std::hypot(way.x(), way.y());  // norm() overflows
+            double on_m = std::min(kStep_m, way_m);
+            while (true) {
+                const Point point = on_m < way_m ? from + on_m / way_m * way : line[i];
+                const auto first = std::ranges::upper_bound(arc_m, least_m) - arc_m.begin() - 1;
+                const auto last = std::ranges::lower_bound(arc_m, most_m) - arc_m.begin();
+                const auto count =
+                    std::min<std::ptrdiff_t>(last, static_cast<std::ptrdiff_t>(arc_m.size()) - 1) - first + 1;
+                const PolylineFoot foot = foot_on_polyline(
+                    point, truth.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)));
+                const double foot_m = arc_m[static_cast<std::size_t>(first)] + foot.arc_length_m;
+                // Shortly before the beginning of the true line, only the lateral offset counts.
+                const bool is_before = foot_m <= 0.0 && foot.distance_m <= kFirstFootBack_m;
+                const double off_m =
+                    is_before ? std::abs(cross(first_way, point - truth[0])) : foot.distance_m;
+                const bool leaps = foot_m < least_m || foot_m > most_m;
+                if (leaps || !(off_m <= kOffCentreLine_m)) return {follow.length_m, true};
+                follow.length_m = std::max(follow.length_m, foot_m);
+                // Beyond the end is the unknown part.
+                if (foot_m >= arc_m.back() - kRounding_m) return {arc_m.back(), false};
+                least_m = std::max(0.0, follow.length_m - kFootBack_m);
+                most_m = follow.length_m + kFootPerChord * kStep_m + kFootAhead_m;
+                if (on_m >= way_m) break;
+                on_m = std::min(on_m + kStep_m, way_m);
+            }
         }
         return follow;
     }

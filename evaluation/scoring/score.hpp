@@ -165,8 +165,8 @@ struct SceneScore {
                                        double latency_ms, const TrackBoundaries* boundaries);
 
 /// The same for an answer that is only a centre line, its first point nearest to the car. It diverges where
-/// it is more than kOffCentreLine_m from the centre line of the ground truth, or from the driven path. Its
-/// length is how far it follows that line. IoU and accuracy are absent.
+/// it is more than kOffCentreLine_m from the centre line of the ground truth or the driven path, leaps along
+/// it or goes back. Its length is how far it follows that line. IoU and accuracy are absent.
 [[nodiscard]] SceneScore score_centre_line(const AnnotatedScene& scene, std::span<const Point> centre_line,
                                            double latency_ms, const TrackBoundaries* boundaries);
 

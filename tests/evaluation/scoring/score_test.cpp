@@ -146,10 +146,33 @@ TEST(Score, ACentreLineAloneIsUsableWhereItFollowsTheTrueOne) {
     EXPECT_NEAR(past_the_end.lane_length_m, 36.0, 0.6);
     const SceneScore off = scored_line({{0, 0}, {8, 0}, {12, 1.2}, {30, 0}});
     EXPECT_EQ(off.category, Category::diverging_below_20);
-    EXPECT_NEAR(off.divergence_distance_m.value(), 8.0, 0.6);
+    EXPECT_NEAR(off.divergence_distance_m.value(), 8.0 + 4.0 / 1.2, 0.2) << "also between its points";
     EXPECT_FALSE(scored_line({{-1, 0}, {-30, 0}}).usable().value()) << "backwards it follows nothing";
     EXPECT_FALSE(scored_line({{-1, 2}, {-1, 30}}).usable().value()) << "sideways";
     EXPECT_EQ(scored_line({}).category, Category::none);
+    for (const auto& far : std::vector<std::vector<Point>>{{{36, 10}, {60, 10}},
+                                                           {{-10, 10}, {60, 10}},
+                                                           {{0, 0}, {100, 50}},
+                                                           {{0, 0}, {18, 10}, {36, 0}},
+                                                           {{36, 0}, {0, 0}},
+                                                           {{0, 0}, {12, 0}, {0, 0}, {36, 0}},
+                                                           {{100, 0}, {120, 0}},
+                                                           {{0, 0}, {1e300, 1e308}}}) {
+        const SceneScore score = scored_line(far);
+        EXPECT_FALSE(score.usable().value()) << far.back().x() << ", " << far.back().y();
+        EXPECT_EQ(score.category, Category::diverging_below_20);
+    }
+}
+
+TEST(Score, ACentreLineMayNotCutFromOneArmOfAHairpinToTheOther) {
+    AnnotatedScene scene = straight_scene();
+    scene.ground_truth.reset();
+    const TrackBoundaries run{{}, {}, false, {{0, 0}, {20, 0}, {20, 4}, {0, 4}}};
+    const auto usable = [&](const std::vector<Point>& line) {
+        return score_centre_line(scene, line, kLatency_ms, &run).usable().value();
+    };
+    EXPECT_TRUE(usable({{0, 0}, {20, 0}, {20, 4}, {10, 4}}));
+    EXPECT_FALSE(usable({{0, 0}, {5, 0}, {5, 4}, {0, 4}})) << "all of its points are on the path";
 }
 
 TEST(Score, WithoutAnnotatedBoundariesDivergenceIsUnknown) {
