@@ -266,6 +266,45 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
     EXPECT_GT(started, 20);
 }
 
+/// With a gap, the answer may cost that much more than the optimum, and the bound may be that much below the
+/// answer.
+TEST_P(SolverContract, AGapAllowsNoMoreThanItSays) {
+    constexpr double kGap = 0.6;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 6 + seed % 4);
+        const RldReport best = solve(scene);
+        if (!best.lane_graph) continue;
+        const LaneGraph other = *solve(scene, {.w_s = 3.0, .w_p = 0.0}).lane_graph;
+        for (const LaneGraph* start : {static_cast<const LaneGraph*>(nullptr), &other}) {
+            const RldReport report = solve(scene, {}, {.absolute_gap = kGap}, start);
+            ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
+            EXPECT_LE(*report.objective, *best.objective + kGap + 1e-6);
+            EXPECT_LE(*report.bound, *best.objective + 1e-6);
+            EXPECT_GE(*report.bound, *report.objective - kGap - 1e-6);
+        }
+    }
+}
+
+/// Edges of such costs, next to which 1 is rounding.
+TEST_P(SolverContract, HugeCostsAreSolvedOrRefused) {
+    const Scene scene = cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}});
+    const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
+    for (const double cost : {1e6, 1e13, 1e15, 4e16, 1e18, 6e19, 1e23, 1e26}) {
+        SCOPED_TRACE(cost);
+        LaneGraphProblem problem = make_problem(scene, {}, solver->extent());
+        for (ProblemEdge& edge : problem.edges) edge.cost = cost;
+        const RldReport report = solver->solve(problem, {});
+        if (report.status == SolveStatus::error) {
+            EXPECT_THAT(report.message, testing::HasSubstr("too large"));
+            EXPECT_GT(cost, 1e13);
+            continue;
+        }
+        ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
+        EXPECT_NEAR(*report.objective, 2.0 * cost, 1e-9 * cost);
+    }
+}
+
 /// With all rows from the first, one solve is enough, also where a cycle or a path between near ends pays.
 TEST(AllRows, OneSolveOfOneProgramGivesTheOptimum) {
     RldParameters parameters;

@@ -282,6 +282,15 @@ TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
     }
 }
 
+/// In doubles, such multipliers hide that two edges cost -1 each.
+TEST(PathPairCertificate, HugeMultipliersProveNoBoundByRounding) {
+    const Scene scene = tests::cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}});
+    for (const double multiplier : {1.0, 1e15, 1e17, 1e20, 1e300}) {
+        const BoundCertificate certificate{std::vector<double>(4, multiplier), {}, 0.0, -1.0};
+        EXPECT_THAT(verify_bound(scene, {}, certificate).violations, testing::SizeIs(1)) << multiplier;
+    }
+}
+
 /// The verifier uses the same shape costs as the solver: it finds the same bound, and nearly always a lower
 /// one if one of them is cheaper. Edges that join no nearest cones count among those that face an edge.
 TEST(PathPairCertificate, RestsOnEveryShapeCost) {
