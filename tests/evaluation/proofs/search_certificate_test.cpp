@@ -100,12 +100,8 @@ TEST(SearchCertificate, IsEnumeratedWhereTheMultipliersAreWeak) {
 
 /// Ahead is a square of cones that costs -1 for each edge and hardly less than 1 for each right angle.
 TEST(SearchCertificate, OfACycleThatCostsNothingIsVerified) {
-    const RldParameters parameters{.theta_t = std::numbers::pi / 2.0 * (1.0 + 1e-15),
-                                   .w_t = 1.0,
-                                   .w_p = 0.0,
-                                   .d_min = 0.0,
-                                   .s_crit = 100.0,
-                                   .t_crit = 100.0};
+    RldParameters parameters{.w_t = 1.0, .w_p = 0.0, .d_min = 0.0, .s_crit = 100.0, .t_crit = 100.0};
+    parameters.theta_t = std::numbers::pi / 2.0 * (1.0 + 1e-15);
     Scene scene = six_cone_lane();
     for (const Point& corner : {Point{13.4, -1.6}, {16.6, -1.6}, {16.6, 1.6}, {13.4, 1.6}})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), corner});
