@@ -7,10 +7,13 @@
 namespace conelane {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+/// Prices of 1e15 would hide a lane's cost in the rounding of doubles.
+using Real = long double;
+
+constexpr Real kNone = std::numeric_limits<Real>::infinity();
 constexpr double kAgreement = 1e-6;
 // A walk counts as shorter only if it is shorter by more than this.
-constexpr double kShorter = 1e-12;
+constexpr Real kShorter = 1e-12L;
 
 class Verification {
   public:
@@ -30,7 +33,7 @@ class Verification {
             violated("a walk gains from an endless cycle: the multipliers prove no bound");
             return std::move(verdict_);
         }
-        const double bound = combine();
+        const double bound = static_cast<double>(combine());
         verdict_.bound = bound;
         if (!(certificate_.bound <= bound + kAgreement)) {
             violated("the bound " + std::to_string(certificate_.bound) +
@@ -43,15 +46,12 @@ class Verification {
     struct Arc {
         std::size_t from;
         std::size_t to;
-        double cost;  ///< reduced, with the multiplier of the cone `to`
+        Real cost;  ///< reduced, with the multiplier of the cone `to`
     };
     struct Succession {
         std::size_t arc;  ///< the next one
-        double cost;      ///< of the turn
+        Real cost;        ///< of the turn
     };
-    [[nodiscard]] double end_cost(std::size_t cone) const {
-        return static_cast<double>(reference_.end_cost(cone));
-    }
     void violated(std::string what) { verdict_.violations.push_back(std::move(what)); }
     /// Whether (28) or a gap forbids the turn from one edge to another one that it shares the cone with.
     [[nodiscard]] bool is_forbidden_turn(std::size_t i, std::size_t middle, std::size_t k) const {
@@ -101,7 +101,7 @@ class Verification {
     }
 
     void build_arcs() {
-        std::map<Edge, double> clique_multiplier;
+        std::map<Edge, Real> clique_multiplier;
         for (const BoundCertificate::Clique& clique : certificate_.cliques) {
             for (const Edge& edge : clique.edges) clique_multiplier[edge] += clique.multiplier;
         }
@@ -111,7 +111,7 @@ class Verification {
                 const Edge edge{i, j};
                 if (reference_.exceeds_s_crit(edge) && !reference_.is_over_gap(edge)) continue;
                 if (!reference_.has_length(edge) || !reference_.joins_nearest(edge)) continue;
-                auto cost = static_cast<double>(reference_.edge_cost(edge));
+                Real cost = reference_.edge_cost(edge);
                 if (reference_.is_along_heading(edge)) cost -= certificate_.heading_multiplier;
                 const auto multiplier = clique_multiplier.find(edge);
                 if (multiplier != clique_multiplier.end()) cost += multiplier->second;
@@ -131,7 +131,7 @@ class Verification {
             for (const std::size_t b : leaving[middle]) {
                 const std::size_t to = arcs_[b].to;
                 if (to == from || is_forbidden_turn(from, middle, to)) continue;
-                successions_[a].push_back({b, static_cast<double>(reference_.turn_cost(from, middle, to))});
+                successions_[a].push_back({b, reference_.turn_cost(from, middle, to)});
             }
         }
     }
@@ -142,14 +142,14 @@ class Verification {
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
             const std::size_t from = arcs_[a].from;
             if (!reference_.is_near(from)) continue;
-            walk_[a] = certificate_.cone_multiplier[from] + end_cost(from) + arcs_[a].cost;
+            walk_[a] = certificate_.cone_multiplier[from] + reference_.end_cost(from) + arcs_[a].cost;
         }
         for (std::size_t round = 0; round <= arcs_.size(); ++round) {
             bool shorter = false;
             for (std::size_t a = 0; a < arcs_.size(); ++a) {
                 if (walk_[a] == kNone) continue;
                 for (const auto& [b, turn] : successions_[a]) {
-                    const double length = walk_[a] + turn + arcs_[b].cost;
+                    const Real length = walk_[a] + turn + arcs_[b].cost;
                     if (!(length < walk_[b] - kShorter)) continue;
                     walk_[b] = length;
                     shorter = true;
@@ -161,35 +161,51 @@ class Verification {
     }
 
     /// The cost of the two cheapest walks to far cones within d_max of each other, minus the constant part of
-    /// the relaxed constraints.
-    [[nodiscard]] double combine() const {
-        std::vector<double> best(cones_, kNone);
+    /// the relaxed constraints, less what rounding may have added.
+    [[nodiscard]] Real combine() const {
+        std::vector<Real> best(cones_, kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
             if (!reference_.is_near(arcs_[a].to)) best[arcs_[a].to] = std::min(best[arcs_[a].to], walk_[a]);
         }
         for (std::size_t f = 0; f < best.size(); ++f) {
-            if (best[f] < kNone) best[f] += end_cost(f);
+            if (best[f] < kNone) best[f] += reference_.end_cost(f);
         }
-        double pair = kNone;
+        Real pair = kNone;
         for (std::size_t f = 0; f < best.size(); ++f) {
             for (std::size_t g = f + 1; g < best.size(); ++g) {
                 if (reference_.are_apart(f, g)) continue;
                 pair = std::min(pair, best[f] + best[g]);
             }
         }
-        double constant = -2.0 * certificate_.heading_multiplier;
-        for (const double multiplier : certificate_.cone_multiplier) constant += multiplier;
-        for (const BoundCertificate::Clique& clique : certificate_.cliques) constant += clique.multiplier;
-        return pair - constant;
+        Real prices = 0.0L;
+        for (const double multiplier : certificate_.cone_multiplier) prices += multiplier;
+        for (const BoundCertificate::Clique& clique : certificate_.cliques) prices += clique.multiplier;
+        const Real of_heading = 2.0L * certificate_.heading_multiplier;
+        return pair - (prices - of_heading) - rounding(prices + of_heading);
+    }
+
+    /// More than the two walks of a lane graph, whose cones are distinct, and the constant part can be off.
+    /// `prices`: the sum of all.
+    [[nodiscard]] Real rounding(Real prices) const {
+        Real largest = prices;
+        for (std::size_t a = 0; a < arcs_.size(); ++a) {
+            if (walk_[a] == kNone) continue;
+            largest = std::max(largest, prices + std::abs(walk_[a]) + std::abs(arcs_[a].cost));
+            for (const Succession& next : successions_[a])
+                largest = std::max(largest, prices + std::abs(walk_[a]) + std::abs(next.cost));
+        }
+        constexpr Real kOfATerm = 4.0L * std::numeric_limits<Real>::epsilon();
+        const auto terms = static_cast<Real>(cones_ + certificate_.cliques.size() + 2);
+        return 2.0L * static_cast<Real>(cones_) * (kShorter + terms * kOfATerm * largest);
     }
 
     const RldParameters& p_;
     const BoundCertificate& certificate_;
     std::size_t cones_;
-    LaneGraphReference<long double> reference_;
+    LaneGraphReference<Real> reference_;
     std::vector<Arc> arcs_;
     std::vector<std::vector<Succession>> successions_;  ///< by arc
-    std::vector<double> walk_;                          ///< the shortest walk that ends with the arc
+    std::vector<Real> walk_;                            ///< the shortest walk that ends with the arc
     BoundVerdict verdict_;
 };
 

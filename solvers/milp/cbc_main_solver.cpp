@@ -80,7 +80,7 @@ class CbcMainSession : public MilpSession {
         if (!preprocess) arguments.insert(arguments.end(), {"-preprocess", "off"});
         arguments.insert(arguments.end(), {"-solve", "-quit"});
         CbcMain1(static_cast<int>(arguments.size()), arguments.data(), model, no_callback, data);
-        read(model, report);
+        read(model, limits, report);
     }
 
     /// A report without a point has no point to drop.
@@ -100,7 +100,7 @@ class CbcMainSession : public MilpSession {
         return {text.data(), end.ptr};
     }
 
-    void read(const CbcModel& model, MilpReport& report) const {
+    void read(const CbcModel& model, const MilpLimits& limits, MilpReport& report) const {
         report.nodes = model.getNodeCount();
         const bool has_point = model.bestSolution() != nullptr;
         if (has_point) report.point.assign(model.bestSolution(), model.bestSolution() + lp_.getNumCols());
@@ -109,7 +109,7 @@ class CbcMainSession : public MilpSession {
             report.stopped_by = StopReason::time;
         } else if (model.isProvenOptimal() && has_point) {
             report.status = SolveStatus::optimal;
-            report.bound = model.getObjValue();
+            report.bound = model.getObjValue() - limits.absolute_gap;
         } else if (model.isProvenInfeasible()) {
             report.status = SolveStatus::infeasible;
         } else {

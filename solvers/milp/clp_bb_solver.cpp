@@ -43,7 +43,8 @@ class ClpBranchAndBound : public MilpSession {
 
   private:
     void search(const MilpLimits& limits, MilpReport& report) {
-        double best = limits.cutoff;
+        double limit = limits.cutoff;  // only nodes below it are searched
+        bound_of_pruned_ = COIN_DBL_MAX;
         lp_.setDualObjectiveLimit(COIN_DBL_MAX);
         bool node_is_open = true;  // whether the relaxation of the current node has yet to be solved
         while (true) {
@@ -52,12 +53,12 @@ class ClpBranchAndBound : public MilpSession {
                     stop(report);
                     return;
                 }
-                const bool inside =
-                    lp_.isProvenOptimal() && lp_.objectiveValue() < best - limits.absolute_gap;
+                const bool inside = lp_.isProvenOptimal() && !prune(lp_.objectiveValue(), limit);
                 if (!path_.empty()) ++report.nodes;
                 const int column = inside ? most_fractional() : -1;
                 if (inside && column < 0) {
-                    best = lp_.objectiveValue();
+                    bound_of_pruned_ = std::min(bound_of_pruned_, lp_.objectiveValue());
+                    limit = std::min(limit, lp_.objectiveValue() - limits.absolute_gap);
                     report.point.assign(lp_.primalColumnSolution(),
                                         lp_.primalColumnSolution() + lp_.numberColumns());
                 }
@@ -76,11 +77,11 @@ class ClpBranchAndBound : public MilpSession {
             // The node is done. Go to the other side of the last decision that has one, unless the bound
             // rules that side out.
             if (path_.empty()) {
-                finish(best, report);
+                finish(report);
                 return;
             }
             Branching& last = path_.back();
-            node_is_open = last.other_side_open && last.bound < best - limits.absolute_gap;
+            node_is_open = last.other_side_open && !prune(last.bound, limit);
             if (node_is_open) {
                 last.other_side_open = false;
                 last.value = last.value > 0.5 ? 0.0 : 1.0;
@@ -90,6 +91,13 @@ class ClpBranchAndBound : public MilpSession {
                 path_.pop_back();
             }
         }
+    }
+
+    /// Whether a node of this bound is not searched. It may hold points within the gap of the best one.
+    bool prune(double bound, double limit) {
+        if (bound < limit) return false;
+        bound_of_pruned_ = std::min(bound_of_pruned_, bound);
+        return true;
     }
 
     void fix(const Branching& branching) {
@@ -133,9 +141,9 @@ class ClpBranchAndBound : public MilpSession {
         return column;
     }
 
-    void finish(double best, MilpReport& report) const {
+    void finish(MilpReport& report) const {
         report.status = report.point.empty() ? SolveStatus::infeasible : SolveStatus::optimal;
-        if (!report.point.empty()) report.bound = best;
+        if (!report.point.empty()) report.bound = bound_of_pruned_;
     }
 
     /// Every open side belongs to a decision on the path, whose bound holds for it. The current node belongs
@@ -150,7 +158,7 @@ class ClpBranchAndBound : public MilpSession {
         report.status = report.point.empty() ? SolveStatus::stopped : SolveStatus::feasible;
         report.stopped_by = StopReason::time;
         if (path_.empty()) return;
-        double bound = path_.back().bound;
+        double bound = std::min(bound_of_pruned_, path_.back().bound);
         for (const Branching& branching : path_) {
             if (branching.other_side_open) bound = std::min(bound, branching.bound);
         }
@@ -163,6 +171,7 @@ class ClpBranchAndBound : public MilpSession {
     std::vector<int> first_;  ///< integer columns, by branching priority
     std::vector<int> others_;
     std::vector<Branching> path_;
+    double bound_of_pruned_ = COIN_DBL_MAX;  ///< of nodes that are not searched, and of points
 };
 
 }  // namespace

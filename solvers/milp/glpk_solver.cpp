@@ -16,6 +16,11 @@ struct Watch {
     bool interrupted = false;  ///< the deadline ended the search
 };
 
+/// Once the bound is as high, no more search is needed: no point is below the cutoff, or better by the gap.
+double sufficient_bound(const Watch& watch, double best_value) {
+    return best_value < watch.cutoff ? best_value - watch.absolute_gap : watch.cutoff;
+}
+
 void check_node(glp_tree* tree, void* data) {
     auto& watch = *static_cast<Watch*>(data);
     const int best = glp_ios_best_node(tree);
@@ -23,7 +28,7 @@ void check_node(glp_tree* tree, void* data) {
     glp_prob* problem = glp_ios_get_prob(tree);
     const bool has_point = glp_mip_status(problem) == GLP_FEAS;
     const double best_value = has_point ? glp_mip_obj_val(problem) : watch.cutoff;
-    if (std::min(best_value, watch.cutoff) - watch.bound <= watch.absolute_gap) {
+    if (watch.bound >= sufficient_bound(watch, best_value)) {
         glp_ios_terminate(tree);
     } else if (watch.deadline.passed()) {
         watch.interrupted = true;
@@ -36,7 +41,7 @@ void check_node(glp_tree* tree, void* data) {
 /// until no better point can use them: see solve().
 constexpr double kMaxCostAtFirst = 1e3;
 constexpr double kCostStep = 1e3;
-/// The limit of Clp: a search that needs a column of this cost or more ends with an error.
+/// A search that needs a column of this cost or more ends with an error.
 constexpr double kMaxCostTaken = 1e25;
 
 /// GLPK keeps an environment for each thread that has used it, and never frees it.
@@ -236,7 +241,7 @@ class GlpkSession : public MilpSession {
         report.bound = std::max(*report.bound, watch.bound);
         const double best_value = has_point ? glp_mip_obj_val(problem_) : limits.cutoff;
         const bool finished = failure == 0 && (status == GLP_OPT || status == GLP_NOFEAS);
-        if (finished || best_value - *report.bound <= limits.absolute_gap) {
+        if (finished || *report.bound >= sufficient_bound(watch, best_value)) {
             report.status = has_point ? SolveStatus::optimal : SolveStatus::infeasible;
             if (finished) report.bound = best_value;
             if (!has_point) report.bound.reset();

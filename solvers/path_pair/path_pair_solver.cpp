@@ -121,12 +121,12 @@ class PathPairSolver : public RldSolver {
         incumbent_.offer(legs[0], legs[1]);
     }
 
-    /// An upper bound of the cost of any lane graph.
+    /// Above the cost of any lane graph by more than rounding.
     static double cost_limit(const LaneGraphProblem& problem) {
         double sum = 1.0;
         for (const ProblemEdge& edge : problem.edges) sum += edge.high_cost ? 0.0 : std::max(0.0, edge.cost);
         for (const ProblemTurn& turn : problem.turns) sum += turn.high_cost ? 0.0 : turn.cost;
-        return sum;
+        return sum * (1.0 + 1e-9);
     }
 
     /// Both legs from the near cones to the far ones.

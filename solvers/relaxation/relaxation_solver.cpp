@@ -92,6 +92,8 @@ RldReport round_by_search(const LaneGraphProblem& problem, std::span<const doubl
         const RldReport found =
             path_pair.solve(favoured, {.limits = {deadline.remaining_ms(), absolute_gap}});
         rounded.nodes += found.nodes;
+        rounded.stopped_by = found.stopped_by;
+        if (!found.lane_graph && found.stopped_by) return rounded;
         if (!found.lane_graph) continue;
         rounded.status = SolveStatus::feasible;
         rounded.lane_graph = found.lane_graph;

@@ -266,6 +266,40 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
     EXPECT_GT(started, 20);
 }
 
+/// The answer is within the gap of the bound, and the bound holds.
+TEST_P(SolverContract, AGapAllowsNoMoreThanItSays) {
+    constexpr double kGap = 2.0;
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 6 + seed % 4);
+        const RldReport best = solve(scene);
+        if (!best.lane_graph) continue;
+        const LaneGraph start = *solve(scene, {.w_s = 3.0, .w_p = 0.0}).lane_graph;
+        for (const bool has_start : {false, true}) {
+            const RldReport report = solve(scene, {}, {.absolute_gap = kGap}, has_start ? &start : nullptr);
+            ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
+            EXPECT_LE(*report.bound, *best.objective + 1e-6);
+            EXPECT_GE(*report.bound, *report.objective - kGap - 1e-6);
+        }
+    }
+}
+
+/// Edges of such costs, next to which 1 is rounding; with 6 m between the boundaries, a lane has all edges.
+TEST_P(SolverContract, HugeCostsAreSolvedOrRefused) {
+    const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
+    for (const double left_m : {1.5, 3.0}) {
+        const Scene scene = cones_at({{4, left_m}, {7.2, left_m}, {4, -left_m}, {7.2, -left_m}});
+        for (const double cost : {1e6, 1e13, 1e15, 4e16, 1e18, 6e19, 1e23, 1e26}) {
+            LaneGraphProblem problem = make_problem(scene, {}, solver->extent());
+            for (ProblemEdge& edge : problem.edges) edge.cost = cost;
+            const RldReport report = solver->solve(problem, {});
+            if (cost > 1e13 && report.message.find("too large") != std::string::npos) continue;
+            ASSERT_EQ(report.status, SolveStatus::optimal) << cost << ": " << report.message;
+            EXPECT_NEAR(*report.objective, 2.0 * cost, 1e-9 * cost);
+        }
+    }
+}
+
 /// With all rows from the first, one solve is enough, also where a cycle or a path between near ends pays.
 TEST(AllRows, OneSolveOfOneProgramGivesTheOptimum) {
     RldParameters parameters;

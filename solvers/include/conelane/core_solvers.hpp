@@ -18,7 +18,7 @@ enum class SolverTrait : unsigned {
     uses_formulation = 1U << 1U,    ///< others ignore the formulation
     suits_paper = 1U << 2U,         ///< fast with Formulation::paper of 12 cones; others take seconds
     reads_time_of_day = 1U << 3U,   ///< a clock that is set during a solve changes its time limit
-    refuses_huge_costs = 1U << 4U,  ///< costs of 1e25 and more give status error and a message
+    refuses_huge_costs = 1U << 4U,  ///< status error and a message at costs of 1e25, or 1e14 with Clp
     tuned = 1U << 5U,               ///< its library has other settings than the default ones
 };
 [[nodiscard]] constexpr SolverTrait operator|(SolverTrait a, SolverTrait b) {

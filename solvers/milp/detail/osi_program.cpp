@@ -17,8 +17,8 @@ double coin_upper(double bound) {
     return bound >= kInfinity ? COIN_DBL_MAX : bound;
 }
 
-/// Clp ends the process if a cost is larger.
-constexpr double kClpMostCost = 1e25;
+/// From about 1e15, Clp calls programs infeasible that are not; above 1e25 it ends the process.
+constexpr double kClpMostCost = 1e14;
 
 }  // namespace
 

@@ -25,7 +25,7 @@ void with_std_errors(Work&& work) {
 void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch);
 
 /// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending.
-/// Throws std::runtime_error for a cost of 1e25 or more, because Clp would end the process.
+/// Throws std::runtime_error for a cost of 1e14 or more, because Clp would answer wrongly.
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program);
 
 void append_rows(OsiSolverInterface& solver, std::span<const ProgramRow> rows);

@@ -5,10 +5,13 @@
 namespace conelane::path_pair {
 namespace {
 
-// Smaller gains are rounding; without a threshold a cycle of cost zero could be walked for ever.
-constexpr double kGain = 1e-12;
-// A cycle is raised this far above 0, so that rounding does not make its cost negative again.
+// Finer than is_cheaper, so that no cycle that this leaves gains in the sums that use it: they would go on
+// for ever. Here, a cycle that gains is found, be it by rounding.
+constexpr double kForwardGain = 1e-14;
+// A cycle is raised this far above 0, or above this share of its terms, so that rounding does not make its
+// cost negative again.
 constexpr double kAboveZero = 1e-7;
+constexpr double kShareAboveZero = 1e-12;
 constexpr std::size_t kArcsPerClock = 512;
 constexpr std::size_t kWorkPerArc = 50;
 
@@ -44,7 +47,7 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
                     const auto p = to_index(position);
                     const auto b = to_index(graph.out_arc[p]);
                     const double candidate = value + graph.out_cost[p] + reduced[b];
-                    if (candidate < label[b] - kGain) {
+                    if (candidate < label[b] - kForwardGain) {
                         label[b] = candidate;
                         before[b] = static_cast<int>(a);
                         open_[b / 64] |= std::uint64_t{1} << (b % 64);
@@ -123,7 +126,7 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
                     const auto p = to_index(position);
                     const auto a = to_index(graph.in_arc[p]);
                     const double candidate = value + graph.in_cost[p];
-                    if (candidate < label[a] - kGain && usable[a] != 0) {
+                    if (is_cheaper(candidate, label[a]) && usable[a] != 0) {
                         label[a] = candidate;
                         open_[a / 64] |= std::uint64_t{1} << (a % 64);
                         again |= a / 64 > word;
@@ -172,16 +175,19 @@ void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::
         });
         if (shares_cone) continue;
         double cost = 0.0;
+        double terms = 0.0;  // sum of their amounts
         for (std::size_t k = 0; k < cycle.size(); ++k) {
             const auto a = to_index(cycle[k]);
             const int next = cycle[(k + 1) % cycle.size()];
             const auto* const first = graph.out_arc.data() + graph.out_start[a];
             const auto* const last = graph.out_arc.data() + graph.out_start[a + 1];
-            cost +=
-                reduced[a] +
+            const double turn =
                 graph.out_cost[static_cast<std::size_t>(std::find(first, last, next) - graph.out_arc.data())];
+            cost += reduced[a] + turn;
+            terms += std::abs(reduced[a]) + turn + std::abs(cone_multiplier[to_index(head(cycle[k]))]);
         }
-        const double raise = std::max(kAboveZero - cost, kAboveZero) / static_cast<double>(cycle.size());
+        const double above = std::max(kAboveZero, kShareAboveZero * terms);
+        const double raise = std::max(above - cost, above) / static_cast<double>(cycle.size());
         for (const int arc : cycle) cone_multiplier[to_index(head(arc))] += raise;
     }
 }

@@ -8,7 +8,7 @@ namespace conelane::path_pair {
 ///     forward(b)  = reduced(b) + min(start(b), min over a before b of forward(a) + turn(a, b))
 ///     backward(a) = min(end(a), min over b after a of turn(a, b) + reduced(b) + backward(b)),
 /// so forward(a) + backward(a) is the cheapest leg through a. A walk is a relaxed path: it may meet a cone
-/// twice and hold incompatible edges. Labels are exact up to 1e-12 a step.
+/// twice and hold incompatible edges. Labels are exact up to rounding (is_cheaper) a step.
 class LegBounds {
   public:
     /// Both passes end early when the clock expires; the labels are then invalid.

@@ -33,6 +33,7 @@ bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) c
 
 void PairRelaxation::reduce_arc_costs(const ResidualGraph& residual, const Multipliers& multipliers) {
     reduce(graph_, cliques_, multipliers, residual, edge_multiplier_, reduced_);
+    for (double& cost : reduced_) cost -= cycle_margin_;
     for (int kind = 0; kind < system_.kind_count; ++kind) {
         std::vector<double>& start = legs_[to_index(kind)].start;
         start.resize(residual.arc.size());

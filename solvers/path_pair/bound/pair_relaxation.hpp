@@ -74,6 +74,10 @@ class PairRelaxation {
         for (Legs& legs : legs_) legs.before.clear();
     }
 
+    /// From now on, each arc costs so much less: in exact arithmetic, too, no cycle then gains at the
+    /// multipliers that an evaluation leaves, if this is more than its rounding.
+    void set_cycle_margin(double margin) { cycle_margin_ = margin; }
+
     /// Returns the bound. If a walk gains from a cycle, the multipliers of the cycle's cones are first raised
     /// until the cycle costs nothing. Minus infinity if stopped.
     double evaluate(const ResidualGraph& residual, Multipliers& multipliers);
@@ -139,6 +143,7 @@ class PairRelaxation {
     std::array<std::vector<int>, 2> walks_;
     std::array<int, 2> ends_{-1, -1};
     double offset_ = 0.0;
+    double cycle_margin_ = 0.0;
 };
 
 /// Reduced-cost fixing: arcs and turns whose bound reaches a limit are in no better pair of legs.

@@ -5,8 +5,6 @@
 namespace conelane::path_pair {
 namespace {
 
-// Smaller gains are rounding.
-constexpr double kGain = 1e-12;
 constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
 /// Extending a frontier takes as long as looking at this many.
@@ -16,6 +14,7 @@ constexpr std::size_t kWorkPerFrontier = 200;  ///< in steps of the clock
 /// nothing.
 constexpr std::size_t kReservedFrontiers = std::size_t{1} << 18U;
 constexpr std::size_t kMaxFirstFrontiers = 1'000'000;
+constexpr std::size_t kMaxFirstWords = 40'000'000;  ///< of 8 bytes, of their sets of edges
 constexpr int kFewFrontiers = 3000;    ///< With more, the bounds of partners are worth their time.
 constexpr int kMaxPartnerArcs = 4000;  ///< of their tables, which grow with arcs and ends
 
@@ -94,13 +93,15 @@ void FrontierGraph::begin(double limit) {
     const auto cost = [&](int kind, int a) {
         return relaxation_.start(kind)[to_index(a)] + relaxation_.reduced()[to_index(a)];
     };
+    const std::size_t words = edges_ == nullptr ? 0 : edges_->words();
+    max_first_ = std::min(kMaxFirstFrontiers, kMaxFirstWords / std::max<std::size_t>(words, 1));
     stack_.clear();  // arcs that a leg of the second kind may start with
     for (int b = 0; b < r.size(); ++b) {
         if (cost(second, b) < kUnreachable) stack_.push_back(b);
     }
     for (int a = 0; a < r.size(); ++a) {
         if (cost(0, a) == kUnreachable) continue;
-        if (now_.frontiers.size() > kMaxFirstFrontiers || out_of_time()) break;
+        if (now_.frontiers.size() > max_first_ || out_of_time() || clock_.tick(stack_.size())) break;
         for (const int b : stack_) {
             const double start = cost(0, a) + cost(second, b);
             if (!(start + leg_onward_[0][to_index(a)] + leg_onward_[to_index(second)][to_index(b)] < limit))
@@ -109,13 +110,14 @@ void FrontierGraph::begin(double limit) {
                 !dominated_of_arcs_->may_pair(0, a, second, b, false)) {
                 continue;
             }
+            if (now_.frontiers.size() > max_first_ || clock_.tick(2 * words)) break;
             const int f = number(a < b ? Frontier{a, b, 0, false}
                                        : Frontier{b, a, static_cast<std::uint8_t>(second), false});
             now_.forward[to_index(f)] = start;
             starts_.push_back(f);
             if (edges_ != nullptr) {
                 intersect_with_union(dominated_.row(to_index(f)), edges_->lost_after(a),
-                                     edges_->lost_after(b), edges_->words());
+                                     edges_->lost_after(b), words);
             }
             open(f);
         }
@@ -183,7 +185,7 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
     has_partners_ = false;
     table_.assign(kFewSlots, -1);
     begin(limit);
-    if (clock_.expired() || now_.frontiers.size() > kMaxFirstFrontiers) {
+    if (clock_.expired() || now_.frontiers.size() > max_first_) {
         stack_.clear();
         return false;
     }
@@ -264,7 +266,7 @@ bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
             if (now_.frontiers.size() > max_frontiers) return false;
         }
         const bool narrowed = narrow_dominated(f, to, arc);
-        const bool cheaper = label < now_.forward[to_index(to)] - kGain;
+        const bool cheaper = is_cheaper(label, now_.forward[to_index(to)]);
         if (cheaper) now_.forward[to_index(to)] = label;
         if (cheaper || narrowed) open(to);
     }
@@ -367,7 +369,7 @@ double FrontierGraph::find_onward(double limit) {
             if (sweep > 1 && std::none_of(on.begin(), on.end(), changed)) continue;
             double value = is_last(f) ? 0.0 : kUnreachable;
             for (const Step& step : on) value = std::min(value, cost(step) + onward(step.to));
-            if (!(value < onward(f) - kGain) || !(value + now_.forward[to_index(f)] < limit)) continue;
+            if (!is_cheaper(value, onward(f)) || !(value + now_.forward[to_index(f)] < limit)) continue;
             now_.onward[to_index(f)] = value;
             changed_[to_index(f)] = sweep;
             again = true;
@@ -391,7 +393,7 @@ void FrontierGraph::find_forward() {
             if (value == kUnreachable || (sweep > 1 && changed_[to_index(f)] < sweep - 1)) continue;
             for (const Step& step : steps(f)) {
                 const double label = value + cost(step);
-                if (!(label < now_.forward[to_index(step.to)] - kGain)) continue;
+                if (!is_cheaper(label, now_.forward[to_index(step.to)])) continue;
                 now_.forward[to_index(step.to)] = label;
                 changed_[to_index(step.to)] = sweep;
                 again |= step.to <= f;

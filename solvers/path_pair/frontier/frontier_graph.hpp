@@ -149,8 +149,9 @@ class FrontierGraph {
     std::vector<int> open_at_;    ///< by moving arc, the first of its open frontiers
     std::vector<int> next_open_;  ///< by frontier
     std::vector<std::uint64_t> open_arcs_;
-    int moving_ = 0;      ///< the arc whose frontiers are extended
-    bool again_ = false;  ///< an arc before it has open frontiers
+    std::size_t max_first_ = 0;  ///< first frontiers, more are too many
+    int moving_ = 0;             ///< the arc whose frontiers are extended
+    bool again_ = false;         ///< an arc before it has open frontiers
     std::vector<int> index_;
     std::vector<int> order_;
     std::vector<int> stack_;

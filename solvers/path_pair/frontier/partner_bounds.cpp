@@ -5,8 +5,10 @@
 namespace conelane::path_pair {
 namespace {
 
-constexpr double kSmallestGain = 1e-12;  ///< Smaller gains are rounding.
-constexpr double kNoWay = 1e100;         ///< Unlike infinity, its differences are numbers.
+// As in is_cheaper.
+constexpr double kSmallestGain = 1e-12;
+constexpr double kRounding = 1e-14;
+constexpr double kNoWay = 1e100;  ///< Unlike infinity, its differences are numbers.
 
 }  // namespace
 
@@ -59,7 +61,7 @@ bool PartnerBounds::find_walks(const PairRelaxation& relaxation, const ResidualG
                 double gain = 0.0;
                 for (std::size_t e = 0; e < ends; ++e) {
                     const double label = step + there[e];
-                    gain = std::max(gain, here[e] - label);
+                    gain = std::max(gain, here[e] - label - kRounding * std::abs(label));
                     here[e] = std::min(here[e], label);
                 }
                 if (!(gain > kSmallestGain)) continue;

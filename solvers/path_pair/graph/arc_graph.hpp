@@ -11,6 +11,12 @@ namespace conelane::path_pair {
     return static_cast<std::size_t>(number);
 }
 
+/// Whether a sum of costs is below another one by more than rounding: without a threshold, a cycle of cost 0
+/// could be walked for ever. `cost` is not minus infinity.
+[[nodiscard]] inline bool is_cheaper(double cost, double than) {
+    return cost + (1e-12 + 1e-14 * std::abs(cost)) < than;
+}
+
 /// The problem as a directed graph in which a path's cost is a walk's: every allowed edge e gives the arcs 2
 /// e (from its first cone to its second) and 2 e + 1 (back), and every allowed turn two successions of arcs.
 /// A leg, one path of the lane graph in one of its directions, is a walk a_1 .. a_k of

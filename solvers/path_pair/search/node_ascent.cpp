@@ -2,6 +2,9 @@
 
 namespace conelane::path_pair {
 
+/// Of certificates, by arc: more than rounding, less than their unit.
+constexpr double kCycleMargin = 1e-10;
+
 void MultiplierStages::round(Multipliers& multipliers) {
     for (double& multiplier : multipliers.cone) multiplier = unit_ * std::ceil(multiplier / unit_);
     for (double& multiplier : multipliers.clique) multiplier = unit_ * std::ceil(multiplier / unit_);
@@ -24,6 +27,7 @@ NodeAscent::NodeAscent(const Context& context)
 void NodeAscent::restart(MultiplierStages* stages) {
     stages_ = stages;
     relaxation_.forget();
+    relaxation_.set_cycle_margin(stages == nullptr ? 0.0 : kCycleMargin);
     usage_.reset(graph_);
 }
 

@@ -98,6 +98,17 @@ TEST(SearchCertificate, IsEnumeratedWhereTheMultipliersAreWeak) {
     EXPECT_EQ(verify(certificate, six_cone_lane(), {}, verdict.steps - 1).kind, Kind::unverified);
 }
 
+/// Ahead is a square of cones that costs -1 for each edge and hardly less than 1 for each right angle.
+TEST(SearchCertificate, OfACycleThatCostsNothingIsVerified) {
+    RldParameters parameters{.w_t = 1.0, .w_p = 0.0, .d_min = 0.0, .s_crit = 100.0, .t_crit = 100.0};
+    parameters.theta_t = std::numbers::pi / 2.0 * (1.0 + 1e-15);
+    Scene scene = six_cone_lane();
+    for (const Point& corner : {Point{13.4, -1.6}, {16.6, -1.6}, {16.6, 1.6}, {13.4, 1.6}})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), corner});
+    const SearchVerdict verdict = verify(certify_search(make_problem(scene, parameters)), scene, parameters);
+    EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+}
+
 /// Multipliers of 1/2^`bits` on some cones and on the heading; no lane graph, and the bound that they prove.
 SearchCertificate priced_proof(std::size_t cones, const std::vector<std::size_t>& priced, int bits,
                                double bound) {

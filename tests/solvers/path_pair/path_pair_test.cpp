@@ -40,6 +40,22 @@ TEST(PathPair, AgreesWithCbc) {
     EXPECT_GT(feasible, 60);
 }
 
+/// Cycles that gain about as much as counts as rounding, or to which a small raise is rounding.
+TEST(PathPair, EndsWhateverTheSizeOfCosts) {
+    const RldParameters parameters{.d_min = 1.0, .d_max = 16.0, .s_crit = 100.0, .t_crit = 100.0};
+    PathPairOptions options;
+    options.max_work = 100'000'000;
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver(options);
+    for (const double cost : {1e-12, 3e-12, 1e-3, 1e9, 1e16}) {
+        for (std::uint64_t seed = 0; seed < 20; ++seed) {
+            LaneGraphProblem problem = make_problem(tests::random_scene(seed, 9), parameters);
+            for (ProblemEdge& edge : problem.edges) edge.cost = -cost;
+            for (ProblemTurn& turn : problem.turns) turn.cost = seed % 2 == 0 ? cost / 3.0 : 0.0;
+            EXPECT_EQ(solver->solve(problem, {}).status, SolveStatus::optimal) << cost << ", seed " << seed;
+        }
+    }
+}
+
 TEST(PathPair, EveryStageCanBeSwitchedOff) {
     const std::unique_ptr<RldSolver> complete = make_path_pair_solver();
     std::vector<PathPairOptions> ablations(7);
@@ -279,6 +295,15 @@ TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
         }
         EXPECT_GT(forged_cliques, 0);
         EXPECT_GT(bounded, 20);
+    }
+}
+
+/// In doubles, such multipliers hide that two edges cost -1 each.
+TEST(PathPairCertificate, HugeMultipliersProveNoBoundByRounding) {
+    const Scene scene = tests::cones_at({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}});
+    for (const double multiplier : {1.0, 1e15, 1e17, 1e20, 1e300}) {
+        const BoundCertificate certificate{std::vector<double>(4, multiplier), {}, 0.0, -1.0};
+        EXPECT_THAT(verify_bound(scene, {}, certificate).violations, testing::SizeIs(1)) << multiplier;
     }
 }
 
