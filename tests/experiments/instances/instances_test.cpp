@@ -169,6 +169,12 @@ TEST_F(Instances, AFileWithoutAKnownOptimumIsTheWholeProblem) {
     }
 }
 
+TEST_F(Instances, TwoConeSetsMayNotHaveOneFileName) {
+    InstanceScene scene{.name = "a_b_n12", .scene = lane_and_ring()};
+    EXPECT_THROW((void)write_instances(path("made"), std::vector{scene, scene}, slice_of_stored()),
+                 InvalidInput);
+}
+
 TEST_F(Instances, AnUnfinishedProgramIsOpen) {
     InstanceOptions options = slice_of_stored();
     options.time_limit_ms = 1e-6;
