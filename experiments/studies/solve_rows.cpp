@@ -376,7 +376,9 @@ void add_limit_option(CLI::App& command, std::optional<std::size_t>& limit, cons
 
 CLI::Option* add_limits_option(CLI::App& command, const std::string& name, std::vector<double>& limits_ms,
                                const std::string& description) {
-    return command.add_option(name, limits_ms, description)->delimiter(',')->check(CLI::Range(0.1, 1e7));
+    return command.add_option(name, limits_ms, description)
+        ->delimiter(',')
+        ->check(CLI::Range(0.1, 1e7) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case));
 }
 
 void require_ascending(const std::string& name, const std::vector<double>& limits_ms) {

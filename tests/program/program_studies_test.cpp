@@ -100,7 +100,9 @@ TEST_F(Program, ShardsOfASolverStudyAreJoinedWithoutSolvingAgain) {
               "refuted.jsonl");
     (void)run(study + "same.jsonl --stored refuted.jsonl");
     for (const nlohmann::json& row : json_lines("same.jsonl")) {
-        if (!row.contains("row")) EXPECT_EQ(row["status"], "error");
+        if (!row.contains("row")) {
+            EXPECT_EQ(row["status"], "error");
+        }
     }
     expect_refused(study + "x.jsonl --params shape --stored 0.jsonl", {"0.jsonl:1", "parameters"});
     expect_refused(study + "x.jsonl --time-limit 100 --then 50", {"--then", "ascending"});

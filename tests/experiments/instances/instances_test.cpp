@@ -1,5 +1,6 @@
 // `conelane instances`: files that other solvers can read, and optima that two engines have proved.
 
+#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "solvers/milp/milp_solver.hpp"
@@ -170,9 +171,8 @@ TEST_F(Instances, AFileWithoutAKnownOptimumIsTheWholeProblem) {
 }
 
 TEST_F(Instances, TwoConeSetsMayNotHaveOneFileName) {
-    InstanceScene scene{.name = "a_b_n12", .scene = lane_and_ring()};
-    EXPECT_THROW((void)write_instances(path("made"), std::vector{scene, scene}, slice_of_stored()),
-                 InvalidInput);
+    const std::vector<InstanceScene> twice(2, InstanceScene{.name = "a_b_n12", .scene = lane_and_ring()});
+    EXPECT_THROW((void)write_instances(path("made"), twice, slice_of_stored()), InvalidInput);
 }
 
 TEST_F(Instances, AnUnfinishedProgramIsOpen) {
