@@ -111,7 +111,7 @@ struct Removed {
     std::string_view word;     ///< or a part of a list
     std::string_view instead;
 };
-constexpr std::array<Removed, 14> kRemoved{{
+constexpr std::array<Removed, 15> kRemoved{{
     {"", "rld-shape-context", "rld-context with --params shape"},
     {"", "astar-lane", "clc"},
     {"", "clc-no-beam", "clc"},
@@ -121,6 +121,7 @@ constexpr std::array<Removed, 14> kRemoved{{
     {"", "tune-method", "tune, for the parameters of RLD"},
     {"study", "anytime", "study backends --solvers path-pair --sizes all --gap-limits"},
     {"study", "confidence-and-colour", "compare --confidence and --color"},
+    {"study", "differential", "study cross-check"},
     {"study", "features", "instances, whose index.csv has the features of each problem"},
     {"study", "noise", "the test that docs/limits.md names"},
     {"study", "--aslib", "--out, whose rows have every run"},

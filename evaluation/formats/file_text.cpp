@@ -9,20 +9,14 @@
 
 namespace conelane {
 
-std::string file_hash(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return "";
-    std::uint64_t hash = 14695981039346656037U;
-    std::array<char, 1U << 16U> block{};
-    while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
-        for (std::streamsize i = 0; i < stream.gcount(); ++i) {
-            hash = (hash ^ static_cast<unsigned char>(block[static_cast<std::size_t>(i)])) * 1099511628211U;
-        }
-    }
-    return fmt::format("{:016x}", hash);
-}
-
 namespace {
+
+constexpr std::uint64_t kHashOfNothing = 14695981039346656037U;
+
+std::uint64_t hash_with(std::uint64_t hash, std::string_view text) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+    return hash;
+}
 
 /// For deflateInit2: the largest window, with gzip's header and checksum.
 constexpr int kGzipWindow = 15 + 16;
@@ -30,6 +24,20 @@ constexpr int kMemoryLevel = 8;
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
 
 }  // namespace
+
+std::string text_hash(std::string_view text) {
+    return fmt::format("{:016x}", hash_with(kHashOfNothing, text));
+}
+
+std::string file_hash(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return "";
+    std::uint64_t hash = kHashOfNothing;
+    std::array<char, 1U << 16U> block{};
+    while (stream.read(block.data(), block.size()), stream.gcount() > 0)
+        hash = hash_with(hash, {block.data(), static_cast<std::size_t>(stream.gcount())});
+    return fmt::format("{:016x}", hash);
+}
 
 std::string gzipped(std::string_view text) {
     z_stream stream{};

@@ -32,6 +32,9 @@ auto parsed_file(const std::filesystem::path& file, const Parse& parse) {
     }
 }
 
+/// FNV-1a of the bytes, 16 hexadecimal digits.
+[[nodiscard]] std::string text_hash(std::string_view text);
+
 /// FNV-1a of a file's bytes, 16 hexadecimal digits; empty if it cannot be read.
 [[nodiscard]] std::string file_hash(const std::filesystem::path& file);
 

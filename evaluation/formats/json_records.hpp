@@ -35,7 +35,7 @@ struct Choices<Pairing> {
 };
 
 /// What a number may be.
-enum class Range { any, not_negative, share };
+enum class Range { any, not_negative, positive, share };
 /// Where a member may be absent: in no record; in what is read, which then keeps its default; also in what is
 /// written, if it is empty or false. A std::optional may always be absent.
 enum class Absent { never, when_read, if_empty };
@@ -93,6 +93,7 @@ void read_value(const JsonNode& json, Value& value, Range range = Range::any) {
         value = json.boolean();
     } else if constexpr (std::unsigned_integral<Value>) {
         value = static_cast<Value>(json.unsigned_integer());
+        if (range == Range::positive && value == 0) json.fail("must be at least 1");
     } else if constexpr (std::same_as<Value, std::int64_t>) {
         value = range == Range::not_negative ? json.non_negative_integer() : json.integer();
     } else {

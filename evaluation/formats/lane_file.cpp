@@ -193,7 +193,7 @@ inline constexpr std::tuple kFields<LaneRecord>{
     Inlined{&LaneRecord::answer},
     Inlined{kInside<&LaneRecord::answer, &LaneAnswer::optimality>, "objective"},
     Inlined{kInside<&LaneRecord::answer, &LaneAnswer::enumeration>, "iterations"},
-    Field{"nearest", &LaneRecord::nearest},
+    Field{"nearest", &LaneRecord::nearest, Range::positive},
     Field{"checked", &LaneRecord::checked, Absent::if_empty}};
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include "detectors/parameters/learned_costs_reader.hpp"
 #include "evaluation/formats/atomic_file.hpp"
+#include "evaluation/formats/file_text.hpp"
 #include "evaluation/formats/json_node.hpp"
 #include "evaluation/formats/weights_file.hpp"
 #include "evaluation/input_error.hpp"
@@ -16,12 +17,8 @@ constexpr const char* kDefault = "default";
 /// FNV-1a of "key=value;" for each parameter of the paper, and for each extra that differs from its default:
 /// so a new extra changes no hash.
 std::string hash_of(const RldParameters& parameters) {
-    std::uint64_t hash = 14695981039346656037U;
-    const auto add = [&](std::string_view key, double value) {
-        for (const char c : fmt::format("{}={};", key, value)) {
-            hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
-        }
-    };
+    std::string text;
+    const auto add = [&](std::string_view key, double value) { text += fmt::format("{}={};", key, value); };
     for (const RldParameterField& field : rld_parameter_fields()) add(field.key, parameters.*field.value);
     for (const RldParameterField& field : rld_extra_fields()) {
         if (parameters.*field.value != RldParameters{}.*field.value) add(field.key, parameters.*field.value);
@@ -36,7 +33,7 @@ std::string hash_of(const RldParameters& parameters) {
             }
         }
     }
-    return fmt::format("{:016x}", hash);
+    return text_hash(text);
 }
 
 std::string cones_text(std::optional<std::size_t> nearest) {

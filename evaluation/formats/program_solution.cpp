@@ -158,7 +158,9 @@ class NamedPoint {
 
 /// The finite number after `key` in a line.
 double number_after(std::string_view key, const Lines& lines) {
-    const auto number = find_number(lines.text().substr(lines.text().find(key) + key.size()));
+    const std::size_t at = lines.text().find(key);
+    const auto number =
+        at == std::string::npos ? std::nullopt : find_number(lines.text().substr(at + key.size()));
     if (!number) lines.fail("'" + std::string(key) + "' must be followed by a finite number");
     return *number;
 }

@@ -58,7 +58,7 @@ struct ClaimedBound {
 };
 
 constexpr std::tuple kClaim{Field{"scene", &CertificateClaim::scene},
-                            Field{"nearest", &CertificateClaim::nearest},
+                            Field{"nearest", &CertificateClaim::nearest, Range::positive},
                             Inlined{&CertificateClaim::parameters}};
 
 /// Indices of a scene's cones, and the first id that has none.
@@ -104,7 +104,7 @@ inline constexpr std::tuple kFields<SolutionRecord>{
     Field{"build_ms", &SolutionRecord::build_ms, Range::not_negative},
     Field{"solve_ms", &SolutionRecord::solve_ms, Range::not_negative},
     Field{"stopped_by", &SolutionRecord::stopped_by},
-    Field{"nearest", &SolutionRecord::nearest},
+    Field{"nearest", &SolutionRecord::nearest, Range::positive},
     Inlined{&SolutionRecord::parameters},
     Field{"message", &SolutionRecord::message, Absent::if_empty}};
 

@@ -189,7 +189,7 @@ ChildProcess::Reply ChildProcess::ask(std::string_view text, double limit_ms) {
         // A negative descriptor is skipped.
         std::array<pollfd, 3> watched{pollfd{output_, POLLIN, 0}, pollfd{errors_, POLLIN, 0},
                                       pollfd{pending_.empty() ? -1 : input_, POLLOUT, 0}};
-        if (::poll(watched.data(), watched.size(), static_cast<int>(std::ceil(left_ms))) < 0) {
+        if (::poll(watched.data(), watched.size(), static_cast<int>(std::ceil(std::min(left_ms, 1e6)))) < 0) {
             if (errno != EINTR) fail(errno, "poll");
             continue;
         }

@@ -189,8 +189,11 @@ std::string SolverProgram::run_once(const SolverQuestion& question) {
     std::string fault;
     while (true) {
         const ChildProcess::Reply reply = child_->ask("", deadline.remaining_ms());
-        if (reply.outcome == ChildProcess::Outcome::line) continue;
-        if (reply.outcome != ChildProcess::Outcome::closed_output) fault = fault_of(reply.outcome, wait_ms);
+        // A program that prints without end always has another line.
+        const bool prints_on = reply.outcome == ChildProcess::Outcome::line;
+        if (prints_on && !deadline.passed()) continue;
+        if (reply.outcome != ChildProcess::Outcome::closed_output)
+            fault = fault_of(prints_on ? ChildProcess::Outcome::late : reply.outcome, wait_ms);
         break;
     }
     // Its output may be closed shortly before it ends.

@@ -95,6 +95,15 @@ void check(const CrossValidationOptions& options) {
     }
 }
 
+/// --overwrite removes the folds of the directory, and learning writes there.
+void require_elsewhere(const fs::path& input, const char* option, const fs::path& directory) {
+    std::error_code ignored;
+    const fs::path folds = fs::weakly_canonical(directory / "folds", ignored);
+    const fs::path place = fs::weakly_canonical(input, ignored);
+    if (!input.empty() && std::ranges::mismatch(folds, place).in1 == folds.end())
+        throw InputError(input, 0, option, "is in the directory of the results, which would replace it");
+}
+
 }  // namespace
 
 std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) {
@@ -134,6 +143,8 @@ void require_held_out(const std::set<std::string>& courses, const fs::path& fold
 
 ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs::path& directory) {
     check(options);
+    require_elsewhere(options.folds, "--folds", directory);
+    require_elsewhere(options.colors_from, "--colors-from", directory);
     const auto family_of =
         std::make_shared<const std::map<std::string, std::string>>(family_of_courses(options));
     ComparisonOptions comparison = options.comparison;

@@ -362,6 +362,12 @@ std::optional<Instance> make_instance(const Scene& scene, const std::string& nam
 
 InstanceCounts write_instances(const std::filesystem::path& folder, std::span<const InstanceScene> scenes,
                                const InstanceOptions& options, const std::function<void()>& advance) {
+    std::set<std::string> names;
+    for (const InstanceScene& set : scenes) {
+        if (!names.insert(set.name).second)
+            throw InvalidInput("--tracks",
+                               fmt::format("two cone sets would have the file name '{}'", set.name));
+    }
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw InputError(folder, 0, "", "cannot be made: " + failure.message());

@@ -114,7 +114,7 @@ struct InstanceCounts {
 /// except those that an engine does not finish in time, and the classes. `advance` is called after each
 /// program. A library in the folder is replaced when all files of the new one are complete; until then it
 /// stays. Throws InputError, also if the folder holds a program that no list names, or another process writes
-/// there.
+/// there; InvalidInput if two cone sets have one name.
 [[nodiscard]] InstanceCounts write_instances(const std::filesystem::path& folder,
                                              std::span<const InstanceScene> scenes,
                                              const InstanceOptions& options,

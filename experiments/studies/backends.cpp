@@ -34,6 +34,7 @@ RowFields<SolveRow> fields_of_file() {
     return with_scene<Row>(
         {{"nearest", &Row::size},
          {"cones", &Row::cones},
+         {"scene_hash", if_any(&Row::scene_hash)},
          {"backend", [](const Row& row) { return row.backend.label(); }},
          {"status", [](const Row& row) { return row.refuted ? SolveStatus::error : row.status; }},
          {"condition", if_any([](const Row& row) { return row.scene->condition; })},
@@ -120,6 +121,8 @@ class BackendsStudy : public SolveStudy {
 
   protected:
     StudyResult aggregate(const SceneSet& set, SolveOptions solves) override {
+        if (!std::isfinite(solves.time_limit_ms))
+            throw InvalidInput("--time-limit", "every row records one, inf is none");
         require_ascending("--gap-limits", solves.gap_limits_ms);
         std::vector<double> limits_ms = solves.then_ms;
         limits_ms.insert(limits_ms.begin(), solves.time_limit_ms);

@@ -2,6 +2,8 @@
 
 #include "conelane/check.hpp"
 #include "conelane/solve_scene.hpp"
+#include "evaluation/formats/file_text.hpp"
+#include "evaluation/formats/scene_file.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/comparison/runner.hpp"
@@ -41,6 +43,7 @@ class Driver {
                      .size = size_,
                      .cones = cones.cones.size(),
                      .permutation = permutation,
+                     .scene_hash = text_hash(scene_line(cones)),
                      .backend = backend_,
                      .limit_ms = options_.longest_limit_ms()};
         if (options_.stored != nullptr) {
@@ -52,11 +55,13 @@ class Driver {
         }
         std::vector<double> limits_ms = options_.then_ms;
         limits_ms.insert(limits_ms.begin(), options_.time_limit_ms);
+        const std::string scene_hash = row.scene_hash;
         for (const double limit_ms : limits_ms) {
             row = permutation == 0 ? solve_within(annotated, cones, limit_ms)
                                    : solve_permuted(annotated, cones, permutation, limit_ms);
             if (row.is_proven() || row.status == SolveStatus::error) break;
         }
+        row.scene_hash = scene_hash;
         return row;
     }
 
@@ -199,8 +204,8 @@ SolveRow solve_of(const JsonNode& json) {
     row.objective = number_in(json, "objective");
     row.bound = number_in(json, "bound");
     row.status = json.member("status").one_of(kStatuses);
-    // The study finds again what refutes a claim.
-    if (json.find("refuted")) row.status = row.objective ? Status::optimal : Status::infeasible;
+    if (const auto refuted = json.find("refuted")) row.refuted = refuted->boolean();
+    if (const auto hash = json.find("scene_hash")) row.scene_hash = hash->string();
     if (const auto message = json.find("message")) row.message = message->string();
     row.nodes = static_cast<std::int64_t>(count_in(json, "nodes"));
     row.rounds = static_cast<int>(count_in(json, "rounds"));
@@ -268,6 +273,7 @@ std::optional<SolveRow> StoredRows::find(const SolveRow& wanted) const {
         {wanted.backend.label(), wanted.scene->scene.id, wanted.size, wanted.cones, wanted.permutation});
     if (known == rows_.end()) return std::nullopt;
     SolveRow row = known->second;
+    if (!row.scene_hash.empty() && row.scene_hash != wanted.scene_hash) return std::nullopt;
     if (!row.is_proven() && row.limit_ms < wanted.limit_ms) return std::nullopt;
     row.scene = wanted.scene;
     row.backend = wanted.backend;
@@ -370,7 +376,9 @@ void add_limit_option(CLI::App& command, std::optional<std::size_t>& limit, cons
 
 CLI::Option* add_limits_option(CLI::App& command, const std::string& name, std::vector<double>& limits_ms,
                                const std::string& description) {
-    return command.add_option(name, limits_ms, description)->delimiter(',')->check(CLI::Range(0.1, 1e7));
+    return command.add_option(name, limits_ms, description)
+        ->delimiter(',')
+        ->check(CLI::Range(0.1, 1e7) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case));
 }
 
 void require_ascending(const std::string& name, const std::vector<double>& limits_ms) {

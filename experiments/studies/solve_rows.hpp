@@ -54,6 +54,7 @@ struct SolveRow {
     std::size_t size = 0;  ///< the requested one, or kAllVisible
     std::size_t cones = 0;
     std::size_t permutation = 0;  ///< 0: original order
+    std::string scene_hash = {};  ///< of pose and cones, as text; empty in rows of version 0.5
     Backend backend = {};
     SolveStatus status = SolveStatus::error;  ///< also error if the independent checker objects
     std::string message = {};
@@ -100,8 +101,9 @@ class StoredRows {
     /// Throws InputError naming file, line and key, also for a solve with parameters of another hash.
     StoredRows(const std::vector<std::string>& files, const std::string& parameter_hash);
 
-    /// The stored solve of the run that `wanted` names by scene, cones, size, backend and permutation, if it
-    /// is a proof or had at least the limit of `wanted`; of several the one with the longest limit.
+    /// The stored solve of the run that `wanted` names by scene, its hash, cones, size, backend and
+    /// permutation, if it is a proof or had at least the limit of `wanted`; of several the one with the
+    /// longest limit. A refuted one stays refuted.
     [[nodiscard]] std::optional<SolveRow> find(const SolveRow& wanted) const;
     [[nodiscard]] const std::vector<SolveBlock>& blocks() const { return blocks_; }
 

@@ -127,7 +127,9 @@ void verify_bounds(const CertificateOptions& options, const RldParameters& param
     for_each_record(options, parameters, records, [&](const CertificateRecord& record, const Scene& scene) {
         ConeId missing{};
         std::vector<std::string> violations;
-        if (const auto certificate = from_record(scene, record, missing)) {
+        if (claims_nothing(record.bound)) {
+            violations.emplace_back("nothing is claimed");
+        } else if (const auto certificate = from_record(scene, record, missing)) {
             violations = verify_bound(scene, parameters, *certificate).violations;
         } else {
             violations.push_back(no_cone(missing));

@@ -2,6 +2,7 @@
 
 #include "evaluation/formats/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
+#include "tests/support/text_tables.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -90,6 +91,19 @@ TEST_F(Program, ShardsOfASolverStudyAreJoinedWithoutSolvingAgain) {
         if (!row.contains("row")) limits_ms.insert(row["limit_ms"].get<double>());
     }
     EXPECT_EQ(limits_ms, (std::set<double>{1000.0, 30000.0}));
+    // Solved again are the scenes whose cones have changed; a refuted proof does not become one.
+    std::string text = text_of(path("whole.jsonl"));
+    file_with(tests::replaced(text, R"("scene_hash":")", R"("scene_hash":"other)"), "changed.jsonl");
+    run_well(study + "again.jsonl --stored changed.jsonl");
+    EXPECT_NE(solves({"again.jsonl"}), solves({"whole.jsonl"}));
+    file_with(tests::replaced(text, R"("status":"optimal")", R"("status":"error","refuted":true)"),
+              "refuted.jsonl");
+    (void)run(study + "same.jsonl --stored refuted.jsonl");
+    for (const nlohmann::json& row : json_lines("same.jsonl")) {
+        if (!row.contains("row")) {
+            EXPECT_EQ(row["status"], "error");
+        }
+    }
     expect_refused(study + "x.jsonl --params shape --stored 0.jsonl", {"0.jsonl:1", "parameters"});
     expect_refused(study + "x.jsonl --time-limit 100 --then 50", {"--then", "ascending"});
     expect_refused(study + "x.jsonl --shard 2/2", {"--shard", "2/2"});

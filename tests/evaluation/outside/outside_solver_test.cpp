@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, Faults,
     testing::Values(Fault{"crash", "what went wrong"}, Fault{"exit", "exit code 3"},
                     Fault{"hang", "no answer within"}, Fault{"half-a-line", "no answer within"},
-                    Fault{"endless-line", "without a newline"}, Fault{"endless-lines", "its answer:1", false},
+                    Fault{"endless-line", "without a newline"}, Fault{"endless-lines", "its answer:1"},
                     Fault{"no-file", "no solution file"}, Fault{"empty-file", "the file is empty"},
                     Fault{"garbage", "line 1"}, Fault{"unknown-column", "no column a_900_901"},
                     Fault{"column-twice", "twice"}, Fault{"not-a-number", "NAME VALUE"},

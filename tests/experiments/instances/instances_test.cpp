@@ -1,5 +1,6 @@
 // `conelane instances`: files that other solvers can read, and optima that two engines have proved.
 
+#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "solvers/milp/milp_solver.hpp"
@@ -167,6 +168,11 @@ TEST_F(Instances, AFileWithoutAKnownOptimumIsTheWholeProblem) {
         ASSERT_EQ(exact.status, SolveStatus::optimal);
         EXPECT_NEAR(report.bound.value(), exact.objective.value(), kSameObjective);
     }
+}
+
+TEST_F(Instances, TwoConeSetsMayNotHaveOneFileName) {
+    const std::vector<InstanceScene> twice(2, InstanceScene{.name = "a_b_n12", .scene = lane_and_ring()});
+    EXPECT_THROW((void)write_instances(path("made"), twice, slice_of_stored()), InvalidInput);
 }
 
 TEST_F(Instances, AnUnfinishedProgramIsOpen) {
