@@ -107,7 +107,7 @@ class PacSim(unittest.TestCase):
         for one in (message, as_objects(message), self.LANDMARKS):
             cones = messages.from_pacsim(one)
             self.assertEqual(cones.cones.tolist(), [[0, 0], [2, -2], [3, -3], [4, -4], [5, -5]])
-            self.assertEqual(cones.labels.tolist(), KINDS[-1:] + KINDS[:-1])
+            self.assertEqual(cones.labels.tolist(), [Color.unknown, Color.blue, Color.yellow, Color.orange, Color.big_orange])
             np.testing.assert_allclose(cones.confidences, [0.0, 0.2, 0.3, 0.4, 0.5])
             self.assertIsNone(cones.ids)
 

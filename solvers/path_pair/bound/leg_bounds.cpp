@@ -6,7 +6,7 @@ namespace conelane::path_pair {
 namespace {
 
 // Finer than is_cheaper, so that no cycle that this leaves gains in the sums that use it: they would go on
-// for ever. Here, a cycle that gains is found, be it by rounding.
+// for ever. Here, a cycle that gains is found, even by rounding alone.
 constexpr double kForwardGain = 1e-14;
 // A cycle is raised this far above 0, or above this share of its terms, so that rounding does not make its
 // cost negative again.
