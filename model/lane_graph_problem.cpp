@@ -475,14 +475,15 @@ LimitedProblem limited_problem(const Scene& scene, const RldParameters& paramete
 
 }  // namespace
 
-std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m) {
+std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m,
+                                     const std::function<bool()>& stop) {
     const std::size_t n = scene.cones.size();
     std::vector<double> reach_m(n, std::numeric_limits<double>::infinity());
     if (!(k > 0.0)) return reach_m;
     const auto rank = static_cast<std::size_t>(std::ceil(k));
     const double longest_m = max_m + kMargin_m;
     std::vector<double> distance_m;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < n && !(stop && stop()); ++i) {
         distance_m.clear();
         for (std::size_t j = 0; j < n; ++j) {
             const double squared = (scene.cones[j].position - scene.cones[i].position).squaredNorm();

@@ -80,7 +80,13 @@ class Builder {
 
     /// Of (29) with their costs; of learned costs which are allowed.
     void find_turns() {
-        problem_.turn_costs.assign(turns_, StripProblem::kForbidden);
+        problem_.turn_costs.reserve(turns_);
+        for (std::size_t cone = 0; cone < problem_.graph.cone_count; ++cone) {
+            if (stop()) return;
+            const std::size_t degree = problem_.degree(cone);
+            problem_.turn_costs.resize(problem_.turn_costs.size() + degree * degree,
+                                       StripProblem::kForbidden);
+        }
         const auto allow = [&](std::size_t cone, std::size_t a, std::size_t b, double cost) {
             double* const costs = problem_.turn_costs.data() + problem_.turns_of[cone];
             costs[a * problem_.degree(cone) + b] = costs[b * problem_.degree(cone) + a] = cost;
@@ -130,15 +136,17 @@ class Builder {
         const Point heading = scene_.pose.heading();
         const double longest = square(p.w_max_m + kTieTolerance);
         const double shortest = square(std::max(0.0, p.w_min_m - kTieTolerance));
-        const std::vector<double> reach_m = reach_of_nearest(scene_, p.nearest_of_rung, p.w_max_m);
+        const std::vector<double> reach_m =
+            reach_of_nearest(scene_, p.nearest_of_rung, p.w_max_m, [this] { return stop(); });
         const auto is_usual = [&](double squared, std::size_t l, std::size_t r) {
             const double most_m = std::max({p.w_usual_m, reach_m[l], reach_m[r]}) + kTieTolerance;
             return squared <= square(most_m);
         };
         rung_.assign(n * n, -1);
         across_.resize(n);
-        for (std::size_t l = 0; l < n && !stop(); ++l) {
+        for (std::size_t l = 0; l < n; ++l) {
             for (std::size_t r = 0; r < n; ++r) {
+                if (stop()) return;
                 const Point way = features_.at(l) - features_.at(r);
                 const double squared = way.squaredNorm();
                 if (squared > longest || squared < shortest || l == r || !is_usual(squared, l, r)) continue;
@@ -167,8 +175,8 @@ class Builder {
             if (edge.high_cost) continue;
             const Point way = features_.at(edge.j) - features_.at(edge.i);
             for (const std::size_t across : across_[edge.i]) {
-                if (rung(edge.j, across) < 0) continue;
                 if (stop()) return;
+                if (rung(edge.j, across) < 0) continue;
                 const double side = cross(way, features_.at(across) - features_.at(edge.i));
                 if (side == 0.0) continue;
                 // Learned costs take the cones inside from here.
@@ -199,7 +207,10 @@ class Builder {
     void index_triangles() {
         std::vector<std::uint32_t>& first = problem_.triangles_of;
         first.assign(problem_.rungs.size() + 1, 0);
-        for (const StripTriangle& triangle : problem_.triangles) ++first[triangle.from + 1];
+        for (const StripTriangle& triangle : problem_.triangles) {
+            if (stop()) return;
+            ++first[triangle.from + 1];
+        }
         for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
         std::vector<StripTriangle> sorted;
         sorted.reserve(problem_.triangles.size());

@@ -2,6 +2,8 @@
 
 #include "conelane/lane_graph_problem.hpp"
 
+#include <functional>
+
 namespace conelane {
 
 /// `make_problem` with a deadline, for a scene that `validate` has accepted: it is not validated again.
@@ -14,7 +16,8 @@ namespace conelane {
                                                        const Deadline& deadline);
 
 /// By cone: the distance of its k-th nearest other cone; infinite if there is none within max_m, or k is 0.
-/// A cone j is among the k nearest of i if fewer than k cones are nearer to i.
-[[nodiscard]] std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m);
+/// A cone j is among the k nearest of i if fewer than k cones are nearer to i. `stop` is asked for each cone.
+[[nodiscard]] std::vector<double> reach_of_nearest(const Scene& scene, double k, double max_m,
+                                                   const std::function<bool()>& stop = {});
 
 }  // namespace conelane
