@@ -169,6 +169,7 @@ void CostsToGo::add_move(const StripTriangle& t) {
 /// The order in which a search by depth leaves the rungs.
 bool CostsToGo::sort_rungs(const Deadline& deadline) {
     order_.clear();
+    stack_.clear();                                 // a search that was stopped left some
     is_waiting_.assign(problem_->rungs.size(), 0);  // now: was seen
     const auto enter = [&](std::uint32_t rung) {
         if (std::exchange(is_waiting_[rung], 1) == 0) stack_.emplace_back(rung, problem_->triangles_of[rung]);

@@ -120,6 +120,31 @@ TEST(Clocks, DetectorsCheckTheClockEveryMillisecond) {
     }
 }
 
+/// A limit may end a detection anywhere; the next scene is answered as by a new detector.
+TEST(Clocks, NothingOfADetectionThatWasStoppedIsLeft) {
+    constexpr std::int64_t kStops = 40;
+    const Scene scene = crowded_scenes().back();
+    const Scene next = tests::random_scene(3, 20);
+    for (const DetectorInfo& info : detectors()) {
+        if (info.name.ends_with("-warm")) continue;
+        SCOPED_TRACE(info.name);
+        const std::unique_ptr<LaneDetector> detector = make_detector(info.name);
+        forget_looks();
+        clock_looks.step_ns = 40'000;
+        (void)detector->detect(scene, {.time_limit_ms = 400.0});
+        const std::int64_t looks = clock_looks.monotonic;
+        const Lane wanted = make_detector(info.name)->detect(next).lane;
+        for (std::int64_t stop = 1; stop <= kStops; ++stop) {
+            forget_looks();
+            clock_looks.away_at = std::max<std::int64_t>(1, looks * stop / kStops);
+            clock_looks.away_s = 1000;
+            (void)detector->detect(scene, {.time_limit_ms = kLongLimit_ms});
+            forget_looks();
+            EXPECT_EQ(detector->detect(next).lane, wanted) << stop;
+        }
+    }
+}
+
 /// A ring of 800 cones around one cone, with edges from that one alone: a third of a million turns at one
 /// cone, which take most of the time. 250 of 300 readings of the clock are among them.
 TEST(Clocks, MakingAProblemChecksTheClockAmongTurns) {
