@@ -96,7 +96,7 @@ class FrontMap {
     static constexpr std::size_t kFewEdges = 12;   ///< a cone that has fewer looks farther
     static constexpr std::size_t kMaxEdges = 160;  ///< from a cone, the shortest ones
 
-    /// Draws on the budget's time; once it is spent, the map is of no use.
+    /// Its time is the budget's. A map is whole only if the budget is not spent.
     void build(const Scene& scene, SearchBudget& budget);
     void build(const Scene& scene) {
         SearchBudget unlimited;
