@@ -19,11 +19,11 @@ def lap_rows(record):
     """A row for each method, share of false positives, and first or later laps, as the second table of `race --speed safe` has them."""
     rows = []
     for (method, rate), heats in sorted(grouped(record["races"], ("method", "false_positive_rate")).items()):
-        for laps in ("first", "later"):
-            driven = [heat["first_lap" if laps == "first" else "later_laps"] for heat in heats if ("first_lap" if laps == "first" else "later_laps") in heat]
+        for laps, key in (("first", "first_lap"), ("later", "later_laps")):
+            driven = [heat[key] for heat in heats if key in heat]
             frames = sum(lap["frames"] for lap in driven)
             if frames:
-                rows.append({"method": method, "rate": rate, "laps": laps, "courses": len(heats)} | {key: rounded(value) for key, value in {
+                rows.append({"method": method, "rate": rate, "laps": laps, "courses": len(heats)} | {name: rounded(value) for name, value in {
                     "time_ratio": mean(lap["time_s"] / lap["laps"] / lap["known_course_lap_s"] for lap in driven if lap["laps"]),
                     "short": sum(lap["short_frames"] for lap in driven) / frames, "wrong_trusted": sum(lap["wrong_trusted"] for lap in driven) / frames,
                     "sideways_p95_m": mean(lap["sideways_p95_m"] for lap in driven if lap["sideways_p95_m"] is not None),
