@@ -42,8 +42,8 @@ SolvedScene solve(RldSolver& solver, const Scene& scene, const RldParameters& pa
 
 class RldDetector : public LaneDetector {
   public:
-    RldDetector(std::unique_ptr<RldSolver> solver, const RldDetectorOptions& options)
-        : solver_(std::move(solver)), options_(options) {}
+    RldDetector(std::unique_ptr<RldSolver> solver, RldDetectorOptions options)
+        : solver_(std::move(solver)), options_(std::move(options)) {}
 
     void reset() override { previous_.reset(); }
 

@@ -33,7 +33,7 @@ class Verification {
             violated("a walk gains from an endless cycle: the multipliers prove no bound");
             return std::move(verdict_);
         }
-        const double bound = static_cast<double>(combine());
+        const auto bound = static_cast<double>(combine());
         verdict_.bound = bound;
         if (!(certificate_.bound <= bound + kAgreement)) {
             violated("the bound " + std::to_string(certificate_.bound) +

@@ -43,7 +43,7 @@ class LearnedReference {
             if (k == i || k == j) continue;
             crowd += fall(length(place_[k] - middle) / Real(3.5));
             const Real share = dot(place_[k] - place_[i], along) / (far * far);
-            if (!(share > 0 && share < 1)) continue;
+            if (share <= 0 || share >= 1) continue;
             const Real off = wedge(along, place_[k] - place_[i]) / far;
             const Real inner = share * (1 - share);
             beside += 4 * inner * fall(off / Real(1.2));
@@ -211,7 +211,7 @@ class LearnedReference {
         const Real d_v(p_.facing_distance_m), theta_v(p_.facing_angle_rad), d_w(p_.lane_width_m),
             d_l(p_.facing_length_m);
         const double reach_m = p_.lane_width_m + 2.0 * p_.facing_distance_m + 1e-6;
-        const Real best = best_facing(
+        Real best = best_facing(
             i, j, reach_m, [&](const Real& l, const Real& b, const Real& sine, const Real& longer) {
                 return Real((l * l + (b - d_w) * (b - d_w)) / (d_v * d_v) +
                             sine * sine / (theta_v * theta_v) + longer * longer / (d_l * d_l));
@@ -420,9 +420,8 @@ class LaneGraphReference {
             return squared > 0 ? std::clamp(Real(dot(from, along) / squared), Real(0), Real(1)) : Real(0);
         };
         const Vector back{-way.x, -way.y};
-        const Real sides =
-            std::min({at(Real(0), foot(back, v)), at(Real(1), foot(u - way, v)), at(foot(way, u), Real(0)),
-                      at(foot({way.x + v.x, way.y + v.y}, u), Real(1))});
+        Real sides = std::min({at(Real(0), foot(back, v)), at(Real(1), foot(u - way, v)),
+                               at(foot(way, u), Real(0)), at(foot({way.x + v.x, way.y + v.y}, u), Real(1))});
         const Real determinant = wedge(u, v);
         if (determinant == 0) return sides;
         const Real s = wedge(way, v) / determinant;

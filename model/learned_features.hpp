@@ -23,7 +23,7 @@ class LearnedFeatures {
                     const std::function<bool(std::size_t)>& stop = {});
 
     /// Precondition: the edge is not high_cost.
-    [[nodiscard]] std::array<double, kEdgeFeatures> edge(std::size_t edge) const;
+    [[nodiscard]] std::array<double, kEdgeFeatures> edge(std::size_t number) const;
     /// Precondition: neither edge is high_cost. `angle_cost`: of (20).
     [[nodiscard]] std::array<double, kTurnFeatures> turn(std::size_t edge_i, std::size_t edge_k,
                                                          std::size_t middle, double angle_cost) const;

@@ -23,13 +23,13 @@ void for_each_costs_list(Costs& costs, const Use& use) {
 /// `version` 1, `features`, the names of the features of each part as the library has them, and for each part
 /// its lists of numbers, such as `edge_linear`, `edge_hidden` and `edge_output`. A network without hidden
 /// units has two empty lists. Throws InvalidInput naming the key, or the line that is not JSON.
-[[nodiscard]] std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view json);
+[[nodiscard]] std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view text);
 
 /// The same from a file. Throws InvalidInput naming the file too, also if it cannot be read.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file);
 
 // The same of the costs of the strip program, which `conelane train strip` writes.
-[[nodiscard]] std::shared_ptr<const StripCosts> parse_strip_costs(std::string_view json);
+[[nodiscard]] std::shared_ptr<const StripCosts> parse_strip_costs(std::string_view text);
 [[nodiscard]] std::shared_ptr<const StripCosts> read_strip_costs(const std::filesystem::path& file);
 
 }  // namespace conelane

@@ -60,7 +60,7 @@ DrivableLane smoothed(const DrivableLane& lane, double step_m) {
         spline =
             SmoothingSpline(places, weights, spacing_m, kSmoothing_m, lane.closed, spline.turning_1pm(0.5));
     }
-    constexpr int kFiner = 4;
+    constexpr std::size_t kFiner = 4;
     DrivableLane fine;
     fine.closed = lane.closed;
     for (std::size_t i = 0; i < kFiner * 2 * half + (lane.closed ? 0 : 1); ++i) {

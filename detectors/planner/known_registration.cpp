@@ -190,7 +190,8 @@ KnownRegistration::Raster KnownRegistration::raster(double widening_m) const {
             const Point place = raster_from_ + kCell_m * Point(column + 0.5, row + 0.5);
             const auto contact = course_.boundary_at(place, widening_m, kNear_m);
             const double nearness = contact ? 1.0 - square(contact->off_m / kNear_m) : 0.0;
-            result.nearness[static_cast<std::size_t>(row * columns_ + column)] = static_cast<float>(nearness);
+            const int cell = row * columns_ + column;
+            result.nearness[static_cast<std::size_t>(cell)] = static_cast<float>(nearness);
         }
     }
     return result;
@@ -203,8 +204,8 @@ float KnownRegistration::nearness(const Raster& raster, std::span<const Point> i
         const double x = cone.x() + moved_cells.x();
         const double y = cone.y() + moved_cells.y();
         if (x < 0.0 || y < 0.0 || x >= columns_ || y >= rows_) continue;
-        sum +=
-            raster.nearness[static_cast<std::size_t>(static_cast<int>(y) * columns_ + static_cast<int>(x))];
+        const int cell = static_cast<int>(y) * columns_ + static_cast<int>(x);
+        sum += raster.nearness[static_cast<std::size_t>(cell)];
     }
     return sum;
 }

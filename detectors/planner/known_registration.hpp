@@ -81,18 +81,18 @@ class KnownRegistration {
     /// (course coordinates): the best first, then distinct ones that explain them nearly as well. Nothing if
     /// none explains enough cones, or `deadline` passed. If the boundaries do not determine the place along
     /// x, that of `expected` is kept. The time is bounded by the reach, for any number of cones.
-    [[nodiscard]] std::vector<RegistrationFit> contenders(std::span<const SeenCone> cones,
+    [[nodiscard]] std::vector<RegistrationFit> contenders(std::span<const SeenCone> all,
                                                           std::span<const SeenView> views, const Pose& car,
                                                           const Pose& expected, const SearchReach& reach = {},
                                                           const Deadline& deadline = Deadline()) const;
 
     /// Moves a registration onto the cones near the car, by at most about a meter. Directions that the cones
     /// do not determine are kept; `stiffness` is the weight of the old registration.
-    [[nodiscard]] Registration refine(Registration registration, std::span<const SeenCone> cones,
+    [[nodiscard]] Registration refine(Registration registration, std::span<const SeenCone> all,
                                       const Point& car, const Stiffness& stiffness = {}) const;
 
     /// How well a registration explains the cones. Places in `views` without a cone lower the score.
-    [[nodiscard]] RegistrationFit fit(const Registration& registration, std::span<const SeenCone> cones,
+    [[nodiscard]] RegistrationFit fit(const Registration& registration, std::span<const SeenCone> all,
                                       std::span<const SeenView> views, const Pose& car) const;
 
   private:

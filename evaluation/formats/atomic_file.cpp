@@ -35,7 +35,7 @@ Registry& registry() {
     // Held to the end, so that nothing that was cleaned up can be created again.
     registry().mutex.lock();
     // Last one first, like destructors: a program that was started ends before its folder is removed.
-    for (auto clear = registry().to_clear.rbegin(); clear != registry().to_clear.rend(); ++clear) (*clear)();
+    for (const auto& clear : registry().to_clear | std::views::reverse) clear();
     // A progress bar may be in the line.
     const std::string line =
         std::string(isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") + "conelane: interrupted\n";

@@ -333,10 +333,8 @@ bool names_a_column(const std::string& text, const BinaryProgram& program) {
     std::string name;
     double value = 0.0;
     if (!(words >> name >> value)) return false;
-    for (const BinaryProgram::Column& column : program.columns) {
-        if (to_string(column.label) == name) return true;
-    }
-    return false;
+    return std::ranges::any_of(program.columns,
+                               [&](const auto& column) { return to_string(column.label) == name; });
 }
 
 }  // namespace

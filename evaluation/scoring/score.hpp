@@ -29,7 +29,7 @@ using CentreLine = std::vector<CentreLinePoint>;
 
 /// The first `length_m` of the centre line of a lane as a car would drive it (see `drivable`). Empty if the
 /// lane cannot be driven, or a boundary is empty: inferred boundaries are not scored.
-[[nodiscard]] CentreLine centre_line_of(const LaneOutline& lane, const Pose& pose,
+[[nodiscard]] CentreLine centre_line_of(const LaneOutline& outline, const Pose& pose,
                                         double length_m = kCentreLineLength_m);
 
 /// The same for a polyline: resampled, from the foot point of the car on.

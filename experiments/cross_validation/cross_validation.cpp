@@ -112,7 +112,8 @@ std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) 
     for (const std::string& text : texts) {
         const std::size_t equals = text.find('=');
         const std::string name = text.substr(0, equals);
-        if (equals == std::string::npos || name.empty() || name.find_first_not_of(kOfNames) != name.npos)
+        if (equals == std::string::npos || name.empty() ||
+            name.find_first_not_of(kOfNames) != std::string::npos)
             throw InvalidInput("--family",
                                "'" + text + "' is not NAME=SPEC with a name of letters, digits, _ and -");
         auto family = std::ranges::find(families, name, &CourseFamily::name);

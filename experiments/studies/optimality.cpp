@@ -3,6 +3,7 @@
 #include "detectors/recipe.hpp"
 #include "evaluation/progress/progress.hpp"
 #include "evaluation/proofs/answer_check.hpp"
+#include "evaluation/scoring/score.hpp"
 #include "experiments/methods/method.hpp"
 #include "experiments/studies/scene_objective.hpp"
 #include "experiments/studies/solve_rows.hpp"
@@ -201,9 +202,9 @@ RowFields<OptimalityRow> fields_of_file(const OptimalityOptions& options) {
          {"feasible_candidates", &Row::feasible},
          {"optimum", [](const Row& row) { return lane_value(row, row.optimum, false); }}});
     for (const auto& [name, lane] : kRivals)
-        fields.push_back({name, [lane = lane](const Row& row) { return lane_value(row, row.*lane, true); }});
-    fields.push_back({"gap", &Row::gap});
-    fields.push_back({"equal", &Row::is_equal});
+        fields.emplace_back(name, [lane = lane](const Row& row) { return lane_value(row, row.*lane, true); });
+    fields.emplace_back("gap", &Row::gap);
+    fields.emplace_back("equal", &Row::is_equal);
     return fields;
 }
 
@@ -300,7 +301,7 @@ std::string quality_table(std::span<const Group> groups) {
     };
     RowFields<Group> fields = with_group({{"", count_of(&Row::is_proven), Shown::number("proven")},
                                           {"", quality(&Row::optimum), Shown::number("optimum")}});
-    for (const auto& [name, lane] : kRivals) fields.push_back({"", quality(lane), Shown::number(name)});
+    for (const auto& [name, lane] : kRivals) fields.emplace_back("", quality(lane), Shown::number(name));
     return row_table(groups, fields);
 }
 

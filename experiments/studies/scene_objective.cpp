@@ -1,7 +1,9 @@
 #include "experiments/studies/scene_objective.hpp"
 
 #include "conelane/check.hpp"
+#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
+#include "evaluation/proofs/answer_check.hpp"
 #include "evaluation/proofs/strip_check.hpp"
 #include "experiments/studies/beams.hpp"
 #include "solvers/registry.hpp"

@@ -4,6 +4,11 @@
 #include "evaluation/world/annotated_scene.hpp"
 #include "model/strip_problem.hpp"
 
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
 namespace conelane::experiments {
 
 /// The costs of an objective whose optimum can be proven: (29) with what the parameters add to it, or those

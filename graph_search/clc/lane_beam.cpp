@@ -78,7 +78,7 @@ template <std::size_t measure>
 double nearly_score(const double* values, double value) {
     constexpr StepMeasure kTable = kMeasures[measure];
     constexpr double kPerSpacing = 1.0 / kTable.spacing;
-    constexpr double kLast = static_cast<double>(kTable.scores - 1);
+    constexpr auto kLast = static_cast<double>(kTable.scores - 1);
     const double at = std::min(std::max((value - kTable.first) * kPerSpacing, 0.0), kLast);
     const auto below = static_cast<std::int32_t>(std::min(at, kLast - 1.0));
     const double* const score = values + kOffsets[measure] + below;

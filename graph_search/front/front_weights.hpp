@@ -130,7 +130,7 @@ void validate(const FrontWeights& weights);
 /// of the networks, such as `extend_hidden`. In files of version 1 the features of colors are absent: they
 /// get weights of 0, so that colors make no difference. Throws InvalidInput naming the key, or the line that
 /// is not JSON.
-[[nodiscard]] FrontWeights parse_front_weights(std::string_view json);
+[[nodiscard]] FrontWeights parse_front_weights(std::string_view text);
 
 /// The same from a file. Throws InvalidInput naming the file too, also if it cannot be read.
 [[nodiscard]] FrontWeights read_front_weights(const std::filesystem::path& file);

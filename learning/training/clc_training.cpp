@@ -25,7 +25,7 @@ constexpr double kMinProbability = 1e-3;
 /// A scene in the search graph with its ground truth, and the beam that should keep it.
 class RightLane {
   public:
-    explicit RightLane(const CandidateSearchOptions& search) : search_(search) {}
+    explicit RightLane(CandidateSearchOptions search) : search_(std::move(search)) {}
 
     /// The fate of the right lane.
     struct Course {

@@ -37,7 +37,7 @@ namespace {
 
 /// As ValueError. A message may quote a file that is not UTF-8; Python could not decode it.
 void set_value_error(const char* message) {
-    const py::object text = py::reinterpret_steal<py::object>(
+    const auto text = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(message, std::strlen(message), "backslashreplace"));
     if (text) PyErr_SetObject(PyExc_ValueError, text.ptr());
 }

@@ -117,6 +117,7 @@ ValueError: parameters: there is no set 'tuned', only default, n12, context, sha
 }  // namespace
 
 void add_rld(py::module_& module) {
+    // NOLINTNEXTLINE(bugprone-unused-raii)
     Class<LearnedCosts, std::shared_ptr<LearnedCosts>>(module, "LearnedCosts",
                                                        "Costs of a set of `rld_parameters`.");
     Class<SolutionObject>(module, "RldSolution", "What `solve_rld` found. Every attribute is a copy.")

@@ -230,7 +230,7 @@ void CostsToGo::relax(const StripTriangle& t, const Move& move) {
     const std::size_t columns = from.columns;
     const std::size_t count = t.is_left ? columns : from.rows;
     const double cost = t.cost + (sum_ > 0.0 ? multipliers_[problem_->entered(t)] : 0.0);
-    const double* const next = costs_.data() + to.first + move.in * (t.is_left ? to.columns : 1);
+    const double* const next = costs_.data() + to.first + std::size_t{move.in} * (t.is_left ? to.columns : 1);
     const std::size_t step = t.is_left ? 1 : to.columns;
     const std::uint16_t* const others = others_.data() + move.others;
     const double* const turns = turns_.data() + move.turns;

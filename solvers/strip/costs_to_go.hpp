@@ -42,7 +42,7 @@ class CostsToGo {
     [[nodiscard]] std::size_t size() const { return size_; }
     [[nodiscard]] std::size_t index(const StripState& state) const {
         const Block& block = blocks_[state.rung];
-        return block.first + state.left * block.columns + state.right;
+        return block.first + std::size_t{state.left} * block.columns + state.right;
     }
     /// Of a lane that begins with the rung, which may start.
     [[nodiscard]] StripState first(std::uint32_t rung) const {

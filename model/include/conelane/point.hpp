@@ -17,12 +17,13 @@ class Point {
         { vector.x() } -> std::convertible_to<double>;
         { vector.y() } -> std::convertible_to<double>;
     }
+    // NOLINTNEXTLINE(google-explicit-constructor)
     constexpr Point(const Vector& vector) : x_m_(vector.x()), y_m_(vector.y()) {}
     template <typename Vector>
     requires(std::constructible_from<Vector, double, double>&& requires(const Vector& vector) {
         vector.x();
     }) constexpr
-    operator Vector() const {
+    operator Vector() const {  // NOLINT(google-explicit-constructor)
         return Vector(x_m_, y_m_);
     }
 

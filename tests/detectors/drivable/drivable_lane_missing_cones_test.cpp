@@ -7,7 +7,7 @@ TEST(DrivableLane, KeepsItsWidthWhereOneBoundaryEndsFirst) {
     // The longer boundary counts within 6.5 m of the other one's end, half of it for the middle.
     const Course longer_right = straight({0.0, 4.0}, range(0.0, 28.0, 4.0));
     const double beyond_m = std::sqrt(6.5 * 6.5 - 3.5 * 3.5);
-    for (Course course : {longer_right, straight(range(0.0, 28.0, 4.0), {0.0, 4.0})}) {
+    for (const Course& course : {longer_right, straight(range(0.0, 28.0, 4.0), {0.0, 4.0})}) {
         const DrivableLane lane = course.driven();
         expect_drivable(course, lane);
         EXPECT_NEAR(lane.length_m, 4.0 + beyond_m / 2.0, 0.5);
