@@ -66,8 +66,8 @@ Outcome compare(LaneDetector& detector, LaneDetector& other, std::string_view na
                              : change.name == "Larger" ? 1e-7
                                                        : kObjectiveTolerance;
     Outcome outcome;
-    for (std::size_t k = 0; k < scenes().size(); ++k) {
-        const Scene scene = scene_for(name, scenes()[k]);
+    for (const Scene& any : scenes()) {
+        const Scene scene = scene_for(name, any);
         SCOPED_TRACE(scene.id);
         ++outcome.scenes;
         const LaneAnswer answer = detector.detect(original.apply(scene), tests::kNoTimeLimit);

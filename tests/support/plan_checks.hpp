@@ -3,9 +3,7 @@
 #include "conelane/planner.hpp"
 #include "tests/support/drivable_checks.hpp"
 
-namespace conelane {
-
-namespace tests {
+namespace conelane::tests {
 
 inline constexpr std::array<std::string_view, 6> kPhases{"approach", "right 1", "right 2",
                                                          "left 1",   "left 2",  "exit"};
@@ -90,5 +88,4 @@ inline void expect_same_plan(const Plan& a, const Plan& b) {
     }
 }
 
-}  // namespace tests
-}  // namespace conelane
+}  // namespace conelane::tests

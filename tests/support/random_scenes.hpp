@@ -24,7 +24,7 @@ inline Scene random_scene(std::uint64_t seed, std::size_t cones) {
         double y = uniform(-7.0, 7.0);
         if (uniform(0.0, 1.0) > 0.33) {
             const double side = i % 2 == 0 ? 1.0 : -1.0;
-            x = 1.0 + spacing * std::floor(static_cast<double>(i) / 2.0) + uniform(-0.4, 0.4);
+            x = 1.0 + spacing * static_cast<double>(i / 2) + uniform(-0.4, 0.4);
             y = 0.5 * curvature * x * x + side * half_width + uniform(-0.3, 0.3);
         }
         scene.cones.push_back({static_cast<ConeId>(100 + i), x * ahead + y * left});

@@ -8,9 +8,9 @@ namespace conelane::tests {
 /// 0, 2, ..., right ids 1, 3, ... The right cones stand a little farther ahead unless told otherwise.
 inline Scene straight_lane(int cones_a_side, double right_ahead_m = 0.2, double spacing_m = 4.0) {
     Scene scene;
-    for (ConeId i = 0; i < cones_a_side; ++i) {
-        scene.cones.push_back({2 * i, {1.0 + spacing_m * static_cast<double>(i), 1.8}});
-        scene.cones.push_back({2 * i + 1, {1.0 + right_ahead_m + spacing_m * static_cast<double>(i), -1.8}});
+    for (int i = 0; i < cones_a_side; ++i) {
+        scene.cones.push_back({2 * i, {1.0 + spacing_m * i, 1.8}});
+        scene.cones.push_back({2 * i + 1, {1.0 + right_ahead_m + spacing_m * i, -1.8}});
     }
     return scene;
 }
