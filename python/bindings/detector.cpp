@@ -362,8 +362,8 @@ constexpr const char* kCourse = R"(course() -> Optional[NDArray[float64]]
 
 The whole course, while a lap is known.
 Returns (N, 7), columns as in `Lane.centre_line`; the last row is one step before the first one. None while no lap is
-    known, and in acceleration and skidpad. More than 6 m driven without a lane make the course unknown until another
-    lap is complete.
+    known, and in acceleration and skidpad. After more than 6 m driven without a lane, no lap is known until another
+    one is complete.
 )";
 
 void add_plan(py::module_& module) {

@@ -63,10 +63,9 @@ struct DetectorOptions {
 
 /// The detector of that name. Without options a learned detector has its shipped weights, rld-learned the
 /// set `learned`, rld-pair and rld-context the defaults of RldParameters. rld-shape applies with_shape_costs
-/// to its parameters. Throws InvalidInput: for an unknown
-/// name, listing the names; for an option or a parameter that is out of range or that the detector does not
-/// use, naming it; and for weights that cannot be read. Detectors are independent of each other; each serves
-/// one thread.
+/// to its parameters. Throws InvalidInput: for an unknown name, listing the names; for an option or a
+/// parameter that is out of range or that the detector does not use, naming it; and for weights that cannot
+/// be read. Detectors are independent of each other; each serves one thread.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(std::string_view name,
                                                           const DetectorOptions& options = {});
 

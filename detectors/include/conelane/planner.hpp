@@ -86,8 +86,8 @@ class Planner {
     /// the last plan. Unless the two frames are equal, that plan then says bridging instead of following.
     [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
 
-    /// The whole course, closed, while a lap is known; always absent in acceleration and skidpad. More than 6
-    /// m driven without a lane make the course unknown until another lap is complete.
+    /// The whole course, closed, while a lap is known; always absent in acceleration and skidpad. After more
+    /// than 6 m driven without a lane, no lap is known until another one is complete.
     [[nodiscard]] virtual std::optional<DrivableLane> course() const = 0;
 
     /// Forgets the run.

@@ -26,7 +26,7 @@ inline constexpr double kMaxLaneWidth_m = 6.5;
 /// closed lane stays unchanged. Precondition: every id of the lane is a cone of the scene.
 void even_far_ends(Lane& lane, const Scene& scene, double widest_m = kMaxLaneWidth_m);
 
-/// The lane among the `nearest` cones ahead (see nearest_ahead): each boundary ends before its first cone
+/// The lane cut to the `nearest` cones ahead (see nearest_ahead): each boundary ends before its first cone
 /// that is not one of them, then even_far_ends is applied. A boundary may keep one cone or none. A lane that
 /// was cut is not closed. Precondition: every id of the lane is a cone of the scene.
 [[nodiscard]] Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest,

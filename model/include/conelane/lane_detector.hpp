@@ -68,7 +68,7 @@ struct LaneAnswer {
     LaneStatus status = LaneStatus::stopped;
     Lane lane;
     std::string message;
-    /// The limit that ended the search. Absent if the search was complete: the lane is the detector's best.
+    /// The limit that ended the search. Absent if no limit did: the lane is the detector's best.
     /// With status stopped, `iterations` may also mean that a beam left lanes out, or that the lane cannot be
     /// driven.
     std::optional<StopReason> stopped_by;
