@@ -20,7 +20,7 @@ struct RaceCourse {
     Mission mission = Mission::trackdrive;
     double start_m = 0.0;                       ///< along the line: start position of the car
     std::optional<double> finish_m = {};        ///< along the line; absent for a closed course
-    double rest_m = 0.0;                        ///< behind the finish: the car must be at rest there
+    double rest_m = 0.0;                        ///< past the finish: the car must be at rest there
     std::vector<std::string_view> phases = {};  ///< phases that a planner must report, in order
 };
 
@@ -29,13 +29,13 @@ struct RaceCourse {
 [[nodiscard]] RaceCourse circuit(const Track& track);
 
 /// Acceleration by the rules: a straight lane 3.8 m wide, cones every 5 m, big cones at the start line at
-/// x = 0 and at the finish 75 m on; the car starts 2 m before the start line, and rests within 100 m behind
+/// x = 0 and at the finish 75 m on; the car starts 2 m before the start line, and rests within 100 m past
 /// the finish.
 [[nodiscard]] RaceCourse acceleration_course();
 
 /// Skidpad by the rules: two circles of 15.25 m and 21.25 m inner and outer diameter, centres 18.25 m apart,
 /// at (0, -9.125) and (0, 9.125); entry and exit along the x axis. The car starts 16 m before the line,
-/// drives right twice and left twice, and rests within 25 m behind the line.
+/// drives right twice and left twice, and rests within 25 m past the line.
 [[nodiscard]] RaceCourse skidpad_course();
 
 /// The geometry of acceleration or skidpad with the cones of a track of that event, whose frame must be as

@@ -21,7 +21,7 @@ enum class WithPlanner { no, only, both };
 [[nodiscard]] std::vector<Racer> racers(const std::vector<std::string>& texts, WithPlanner with_planner);
 
 /// A driver that returns the next `ahead_m` of the true centre line, from the pose that the car believes, and
-/// stops behind the last line. Its map frame is that of the world: no random map frame, drift or jumps.
+/// stops past the last line. Its map frame is that of the world: no random map frame, drift or jumps.
 [[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps, double ahead_m = 20.0);
 
 /// A new driver for one race. `course` must outlive it. `weights`: instead of the shipped weights, if not

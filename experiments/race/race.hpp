@@ -102,8 +102,8 @@ struct RaceResult {
     int finished_laps = 0;
     double driven_m = 0.0;              ///< along the course, laps included
     std::optional<double> departure_m;  ///< along the course
-    std::optional<double> stop_said_m;  ///< behind the finish line; negative: before it
-    std::optional<double> rest_m;       ///< behind the finish line
+    std::optional<double> stop_said_m;  ///< past the finish line; negative: before it
+    std::optional<double> rest_m;       ///< past the finish line
     int cones_hit = 0;
     std::optional<double> lateral_error_p95_m;  ///< of the car's middle to the true centre line
     int frames = 0;                             ///< answered

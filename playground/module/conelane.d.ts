@@ -145,7 +145,7 @@ export interface Plan {
   lap: number;
   /** Come to rest within the rest of `lane`. */
   stop: boolean;
-  /** Distance along `lane` to the line behind which the car has to stop; absent while it is not on the lane. */
+  /** Distance along `lane` to the line past which the car has to stop; absent while it is not on the lane. */
   stop_line_m?: number;
   /** Why the course of the lap before is not trusted to its end, or why the path is lost; else empty. */
   reason: string;

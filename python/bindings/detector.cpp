@@ -166,9 +166,9 @@ constexpr const char* kDetect =
 
 The lane among cones.
 
-cones: (N, 2), positions x, y [m], in any order, in the frame of `pose`: a map, or the car.
-pose: (3,), the car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a frame of the car with x ahead and y
-    to the left it is (0, 0, 0).
+cones: (N, 2), positions x, y [m], in any order, in the frame of reference of `pose`: the map's or the car's.
+pose: (3,), the car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In the car's frame of reference (x ahead, y
+    to the left) it is (0, 0, 0).
 ids: (N,), distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its id.
     By default the index.
 colors: (N,), "unknown", "blue", "yellow", "orange", "big_orange", or their codes 0 to 4 (`Color`). Or probabilities
@@ -176,8 +176,8 @@ colors: (N,), "unknown", "blue", "yellow", "orange", "big_orange", or their code
     parameter `w_color` use them, other detectors the most probable label. By default unknown.
 confidences: (N,), of the detections, in [0, 1]. By default 1.
 time_limit_ms: Wall clock [ms]; None for no limit.
-covariances: (N, 2, 2), of the positions [m^2], in the frame of `pose`: symmetric and positive semidefinite. `front`
-    uses them. By default unknown, which is the same as 0.
+covariances: (N, 2, 2), of the positions [m^2], in the frame of reference of `pose`: symmetric and positive semidefinite.
+    `front` uses them. By default unknown, with the same answers as 0.
 Raises ValueError for wrong shapes and dtypes, numbers that are not finite or out of range, an invalid covariance, and an
     id that occurs twice.
 
@@ -267,11 +267,11 @@ constexpr const char* kSpeedProfile =
 The fastest speeds along an open path: a limit by curvature, a pass forward for driving and a pass backward for
 braking; across and along, the tyres share their grip (the friction ellipse).
 
-centre_line: (N, 7), columns as of `Lane.centre_line`, for example of a plan.
+centre_line: (N, 7), columns as in `Lane.centre_line`, for example of a plan.
 v_now: Speed at the first point [m/s]. If the first speed of the result is lower, the car has to brake at once.
-stop_at_m: Where the car has to be at rest [m], for example `Plan.safe_m`; None for nowhere.
+stop_at_m: Where the car has to be at rest, along the path [m], for example `Plan.safe_m`; None for nowhere.
 a_lateral, a_brake, a_drive, v_max: Limits across the car, along it by the tyres and by the motor [m/s^2]; speed [m/s].
-Returns (N, 4): s [m], speed [m/s], acceleration up to the next row [m/s^2], time [s]; the time behind a stop is inf.
+Returns (N, 4): s [m], speed [m/s], acceleration up to the next row [m/s^2], time [s]; the time past a stop is inf.
 Raises ValueError for wrong shapes, and for a limit that is not positive and finite.
 
 >>> import conelane, numpy
@@ -317,8 +317,8 @@ laps: Of trackdrive, by default 10, and of autocross, by default 1. The other mi
 max_age_s: Largest age of a lane that is still driven [s].
 step_m, smoothing_m, max_gap_m, default_width_m: Of the lanes in plans, see `Lane.drivable`; step_m is at most 5.
 nearest, parameters, pairing, weights: Options of the detector, see `Detector`.
-Raises ValueError for an unknown mission, detector or option, for one that the mission or the detector does not use, and for
-    values out of range.
+Raises ValueError for an unknown mission, detector or option, for an option that the mission or the detector does not use,
+    and for values out of range.
 
 Planners are independent of each other, and the interpreter lock is free while they plan: use one for each run.
 Calls of one planner from several threads wait for each other.
@@ -343,17 +343,17 @@ constexpr const char* kUpdate =
 
 The plan of the next frame.
 
-cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
+cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of reference of `pose`. N may be 0.
 pose: (3,), the car in a fixed map: x, y [m] and yaw [rad].
 time_s: Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
-    nothing: its plan is the last plan, with the state "bridging" unless the frame is the same.
+    nothing: it returns the last plan. Unless the two frames are equal, "following" then becomes "bridging".
 ids: (N,), distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised
     by its place.
 colors: As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both
-    sides of the lane are the start line, big ones before others.
+    sides of the lane are the start line, preferably big ones.
 time_limit_ms: Of the detector and of the search for the place of a known course, wall clock [ms]; None for no limit.
 confidences: (N,), of the detections, in [0, 1]. By default 1.
-covariances: (N, 2, 2), as of `Detector.detect`. In trackdrive and autocross they are only checked: the planner keeps
+covariances: (N, 2, 2), as in `Detector.detect`. In trackdrive and autocross they are only checked: the planner keeps
     means of many sightings.
 Raises ValueError as `Detector.detect`, and for a `time_s` that is not finite; the planner then stays unchanged.
 )";
@@ -361,8 +361,9 @@ Raises ValueError as `Detector.detect`, and for a `time_s` that is not finite; t
 constexpr const char* kCourse = R"(course() -> Optional[NDArray[float64]]
 
 The whole course, while a lap is known.
-Returns (N, 7), columns as of `Lane.centre_line`; the last row is one step before the first one. None before that, after
-    more than 6 m without a lane until the next lap, and in acceleration and skidpad.
+Returns (N, 7), columns as in `Lane.centre_line`; the last row is one step before the first one. None while no lap is
+    known, and in acceleration and skidpad. After more than 6 m driven without a lane, no lap is known until another
+    one is complete.
 )";
 
 void add_plan(py::module_& module) {
@@ -387,7 +388,7 @@ stretch to come to rest on is driven.)",
         .get("stop", "bool: the last line is crossed: come to rest on `centre_line`", &Plan::stop)
         .get(
             "stop_line_m",
-            R"(Optional[float]: distance along `centre_line` to the line behind which the car has to stop [m]; None while that
+            R"(Optional[float]: distance along `centre_line` to the line past which the car has to stop [m]; None while that
 line is not on the lane, not known, or crossed)",
             &Plan::stop_line_m)
         .get(

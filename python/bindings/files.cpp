@@ -134,8 +134,7 @@ closed: Whether the course is a circuit.
 constexpr const char* kReadBoundaries =
     R"(read_boundaries(file: Union[str, "PathLike[str]"]) -> Dict[str, Boundaries]
 
-Boundaries of the courses of a scenes file, from `file`, the `*.tracks.json` file beside it.
-Returns by the name of the track.
+Boundaries of courses, by the name of the track. `file` is the `*.tracks.json` file beside a scenes file.
 Raises ValueError, naming file and key.
 )";
 
@@ -173,8 +172,8 @@ every_m: Travel from scene to scene [m].
 condition: "paper", undisturbed; "car", "harsh" or "slam": noise, missed cones, false ones that stay in place.
 with_color: Whether cones show the colours of the track.
 seed: The same seed gives the same scenes.
-noise_by_range: Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise
-    of the condition. Above 0 the scenes have `covariances`.
+noise_by_range: Standard deviation of the positions for each metre between cone and car, in [0, 1], in addition to the
+    noise of the condition. Above 0 the scenes have `covariances`.
 
 >>> import conelane
 >>> track = conelane.load_tracks("generated:circle")[0]

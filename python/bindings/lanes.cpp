@@ -105,7 +105,7 @@ constexpr const char* kDrivable =
 
 The centre line with the gaps that it bridges and whether a boundary was inferred.
 
-step_m, smoothing_m: As of `centre_line`.
+step_m, smoothing_m: As in `centre_line`.
 max_gap_m: Longer gaps of a boundary are reported as bridged [m].
 default_width_m: The `usual_width_m` of `centre_line`.
 )";
@@ -138,9 +138,9 @@ that can be driven was found; "error": see `message`.)",
              &LaneAnswer::confidence)
         .get(
             "trusted_m",
-            R"(Optional[float]: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one: with a
-`confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was found, or if a
-file does not have it: do not trust that lane.)",
+            R"(Optional[float]: trusted length [m]. A lane found by `Detector` always has one: with a `confidence` it follows from
+probabilities, without one from a rule, 10 m at most. None if no lane was found, or if a file does not have it: do not
+trust that lane.)",
             steps..., &LaneAnswer::trusted_m);
 }
 
@@ -178,8 +178,8 @@ void add_record(Class<LaneObject>& lane) {
              &Scene::pose, kArray)
         .get(
             "merged",
-            R"(Dict[int, int]: ids of the cones that the detector left out, because each is within 0.12 m of another cone (front,
-front-warm: 0.35 m if there are many), and the id that represents both; empty for a lane from a file)",
+            R"(Dict[int, int]: from the id of each cone that the detector left out, because another cone is within 0.12 m (front,
+front-warm: 0.35 m if there are many), to that cone's id; empty for a lane from a file)",
             merged)
         .get("objective", "Optional[float]: cost of the lane, of a detector that states one",
              [](const LaneObject& l) { return of_proof(l, &Optimality::objective); })
@@ -211,7 +211,7 @@ has one from the planner, negative in trackdrive and autocross)",
 
 void add_drivable_lane(py::module_& module) {
     Class<DrivableLane>(module, "DrivableLane", "A lane ready to be driven. Every attribute is a copy.")
-        .get("centre_line", "NDArray[float64]: (N, 7), columns as of `Lane.centre_line`",
+        .get("centre_line", "NDArray[float64]: (N, 7), columns as in `Lane.centre_line`",
              [](const DrivableLane& d) { return array(d); })
         .get("closed", "bool: a circuit: the last row is one step before the first", &DrivableLane::closed)
         .get("length_m", "float: of the centre line [m]", &DrivableLane::length_m)

@@ -42,7 +42,7 @@ class BagRun(NamedTuple):
     """The frames of a bag, ordered by their stamps, and where they are from.
 
     cones, poses: Topic and type.
-    left_out: How many messages of cones are no frame, by the reason.
+    left_out: For each reason, how many messages of cones made no frame.
     """
 
     frames: List[Frame]
@@ -69,7 +69,7 @@ def read_bag(path: Union[str, "os.PathLike[str]"], mapping: Mapping = Mapping())
             if maker.reader(cones[0].msgtype) is None:
                 raise _Refused(f"{cones[0].topic}: type {cones[0].msgtype} is unknown: --mapping FILE has to say where its cones are")
             poses = _topic(reader, "pose", mapping.pose, POSE_TYPES)
-            # A topic of poses comes first, so that TF does not give the same frame again.
+            # A topic of poses comes first, so that TF does not give the same frame of reference again.
             for wanted in (poses, [one for one in reader.connections if _plain(one.msgtype) in POSE_TYPES[3:] and one not in poses]):
                 for connection, _, raw in reader.messages(wanted) if wanted else ():
                     message = reader.deserialize(raw, connection.msgtype)

@@ -29,7 +29,7 @@ POSE_TYPES = ("nav_msgs/Odometry", "geometry_msgs/PoseStamped", "geometry_msgs/P
 
 
 class Frame(NamedTuple):
-    """One frame: `planner.update(**frame._asdict())`. Arrays as of `Planner.update`; cones and pose are in the map's frame."""
+    """One frame: `planner.update(**frame._asdict())`. Arrays as for `Planner.update`; frame of reference: the map's."""
 
     cones: FloatArray
     pose: Tuple[float, float, float]
@@ -45,14 +45,14 @@ class NoPose(ValueError):
 
 
 class Mapping(NamedTuple):
-    """What conelane has to be told of a log or a system; nothing where it can be seen from the messages.
+    """What conelane has to be told of a log or a system where the messages do not show it.
 
     cones, pose: Topics. Needed if there are several, and for cones of MarkerArray and PointCloud2.
-    map_frame: Frame of reference of the run. By default the root of the tree of frames that the car's is in.
+    map_frame: Frame of reference of the run. By default the root of the tree of TF that has the car's.
     car_frame: The car's frame of reference. By default the child of Odometry, else "base_link" or "base_footprint".
-    cones_frame: Frame of reference of the cones, instead of that in their header; by default without header: the map.
-    types: `Fields` by the name of a message type, such as "my_msgs/Cones".
-    definitions: By the same name the text of the .msg file, for ROS 2 bags without definitions.
+    cones_frame: Frame of reference of the cones. By default that of their header; without a header the map's.
+    types: A dict from names of message types, such as "my_msgs/Cones", to `Fields`.
+    definitions: A dict from the same names to the text of the .msg file, for ROS 2 bags without definitions.
     """
 
     cones: Optional[str] = None
@@ -146,10 +146,10 @@ class _Sighting(NamedTuple):
 
 
 class MessageFrames:
-    """Makes frames of messages. A message may be an object or a dict, as of `conelane.messages`; `type_name` names its type.
+    """Makes frames of messages. A message may be an object or a dict, as in `conelane.messages`; `type_name` names its type.
 
     mapping: See `Mapping`.
-    most: So many poses of a frame of reference are kept, and for a while up to twice as many; None for all.
+    most: How many poses of each frame of reference are kept, at times up to twice as many; None for all.
     """
 
     def __init__(self, mapping: Mapping = Mapping(), most: Optional[int] = None) -> None:
@@ -161,12 +161,12 @@ class MessageFrames:
         self._of_pose: Optional[str] = None  # the frame that a topic of poses gives; TF does not change it
 
     def reader(self, type_name: str) -> Optional[Callable[[Any], Cones]]:
-        """What reads the cones of this type; None if the mapping has to say it."""
+        """What reads the cones of this type; None if the type is unknown."""
         fields = self._fields.get(_plain(type_name))
         return fields.read if fields else READERS.get(_plain(type_name))
 
     def add_poses(self, type_name: str, message: Any, is_fixed: bool = False) -> None:
-        """Adds the poses of a message of one of `POSE_TYPES`. Raises ValueError for numbers that are no pose."""
+        """Adds the poses of a message of one of `POSE_TYPES`. Raises ValueError for an invalid pose."""
         if _plain(type_name) in _TF:
             for one in _field(message, "transforms"):
                 child = _field(one, "child_frame_id").lstrip("/")
@@ -192,7 +192,7 @@ class MessageFrames:
             del edge.samples[:-self._most]
 
     def sighting(self, type_name: str, message: Any, received_ns: int) -> _Sighting:
-        """The cones of a message. One without stamp gets the time at which it was received."""
+        """The cones of a message. A message without stamp gets the time at which it was received."""
         reader = self.reader(type_name)
         if reader is None:
             raise ValueError(f"type {_plain(type_name)} is unknown: a mapping has to say where its cones are")
@@ -290,8 +290,8 @@ def _as_line(frame: Frame) -> str:
 
 
 def write_frames(file: Union[str, "os.PathLike[str]"], frames: Iterable[Frame]) -> int:
-    """Writes a `*.frames.jsonl` file, which `conelane drive --follow` takes, and returns the number of frames. If that fails, an
-    old file stays unchanged."""
+    """Writes a `*.frames.jsonl` file, which `conelane drive --follow` takes, and returns the number of frames. If writing fails,
+    an old file stays unchanged."""
     count, half = 0, Path(f"{os.fspath(file)}.part-{os.getpid()}")
     try:
         with open(half, "w", encoding="utf-8") as stream:

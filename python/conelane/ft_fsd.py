@@ -51,12 +51,12 @@ _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
 _GUESSED_M = 5.0  # of a lane that is a guess
 _SHORT_OF_A_WALL = 2  # points of the centre line, 0.5 m each
 _SHORTEST_M = 3.0  # of a path: colours end it no earlier
-_CONTRADICTION = 3  # cones of the other side's colour more than of the own
+_CONTRADICTION = 3  # more cones of the other side's colour than of the own
 _SAME_PLACE_M = 0.1  # of a car that has not moved
 _LONGEST_WAY_M = 2.0  # of a car between calls that are compared
 _MOVED_M = 0.3  # cones that have moved, beyond noise
 _COMPARED_CONES = 12  # the nearest ones
-_FIT = 0.5  # share of the distances, if the cones moved
+_FIT = 0.5  # share of the distances that is left if a drive explains them
 _SURE_CALLS = 5  # whose cones have moved
 _MOST_CONES = 5000  # whose places are kept
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
@@ -97,7 +97,7 @@ class _ConeMemory:
 
 
 class _FrameCheck:
-    """Tells from what moves from call to call in which frame the cones are given."""
+    """Tells the cones' frame of reference from what moves between calls."""
 
     def __init__(self) -> None:
         self._first: Optional[Tuple[FloatArray, _Pose]] = None  # since the car has its place
@@ -130,7 +130,7 @@ def _way_m(a: _Pose, b: _Pose) -> float:
 
 
 def _has_driven(before: FloatArray, pose_before: _Pose, now: FloatArray, pose_now: _Pose) -> bool:
-    """Whether cones lie as seen before and after a drive of 0.3 to 3 m, and hardly any where it was."""
+    """Whether cones lie as seen before and after a drive of 0.3 to 3 m, and few stayed in place."""
     before = _nearest_cones(before, pose_before, 3 * _COMPARED_CONES)
     now = _nearest_cones(now, pose_now, _COMPARED_CONES)
     count = min(len(before), len(now))
@@ -182,15 +182,15 @@ class PathPlanner:
     time_limit_ms: Of each call [ms]; None for no limit.
     max_path_age: For at most this many calls without a lane, `interval_s` apart, the last path is returned; 0 for none.
     interval_s: Time between calls that give no `time_s` [s].
-    frame: In which frame cones and pose are given. By default recognised: in the car's frame, the cones move as the
-        car drives while `vehicle_position` stays. Calls in the car's frame are answered each by itself.
+    frame: Frame of reference of cones and pose, "map" or "car". By default recognised: in the car's, the cones move as
+        the car drives while `vehicle_position` stays. There each call is answered by itself.
 
     Its attributes:
-    path_age: Of the path returned last: 0 where it is of that call's cones, n where its lane was found n calls
+    path_age: Of the path returned last: 0 where its lane is of that call's cones, n where it was found n calls
         before; None where there was no path.
     plan: Of the last call: its state, `stop`, `lap`, `phase` and how far it is safe.
     frame: "map" or "car": how the last call was answered.
-    relocalization_info: As of the original in missions of laps. In acceleration and skidpad an `AttributeError`.
+    relocalization_info: None in missions of laps, like the original. In acceleration and skidpad an `AttributeError`.
 
     Raises ValueError for an unknown detector or frame, for `laps` of a mission that has none, and for values out of range.
 
@@ -199,25 +199,25 @@ class PathPlanner:
     - **No path is an array of no rows**, shape (0, 4): where no lane was found yet, or none for more than
       `max_path_age` calls, or where nothing of the last path lies ahead of the car. A controller brakes then. As long
       as the plan has a path, there are rows.
-    - A path of an earlier call is flagged by `path_age`. It is what is left of it: it begins beside the car, and goes no
-      farther than it did.
+    - `path_age` flags a path of an earlier call. Then its rest is returned: from beside the car to where the earlier
+      path ended.
     - `plan.stop` says that the last line is crossed. The path ends where the car has to be at rest.
     - The path begins at the car's foot point on the centre line, and at the car itself only where the lane begins
       ahead of it.
     - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
-      where no cone is. The path ends too where colours contradict the lane, at 3 m at least: where three cones of a side
-      more have the colour of the other one than its own, two at the end of the side, and before it crosses the line
-      between two cones of a side that have the colour of that side. One contradicting cone is a miscoloured one.
+      where no cone is. The path also ends, but not in its first 3 m, where colours contradict the lane: where in a
+      stretch of a side three more cones have the other side's colour than this side's (two more at the side's end), and
+      before it crosses the line between two successive cones of a side in this side's colour. A single contradicting
+      cone counts as miscoloured.
     - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones. In acceleration and
       skidpad, once their place is found, the path is that of the rules, laid onto the cones, and the sorted arrays are
       empty. `ebs_test` is driven as laps.
     - In a map calls have a memory: one planner serves one run, call by call. In the car's frame there is none: no laps
-      are counted, nothing says stop, and a call without a lane has no path. Acceleration and skidpad need a map; in the
-      car's frame they are refused by a `ValueError`, and so is a place that moves together with cones of the car's
-      frame.
+      are counted, nothing says stop, and a call without a lane has no path. There acceleration, skidpad and a
+      `vehicle_position` that moves are a `ValueError`.
     - `cone_sorting`, `cone_matching`, `pathing`, `config`, `relocalizer`, `global_path` and `set_global_path` are
       refused by an `AttributeError`. `mission` cannot be assigned. There is no `RelocalizationInformation`.
-    - Invalid input is a `ValueError`, and the planner is then as it was before.
+    - Invalid input is a `ValueError`, and the planner stays unchanged.
 
     >>> import numpy as np
     >>> from conelane.ft_fsd import ConeTypes, MissionTypes, PathPlanner
@@ -294,15 +294,15 @@ class PathPlanner:
             last call.
 
         Returns the path, or all seven:
-        path: (M, 4), s [m], x, y [m], curvature [1/m]. Where no lane is found: what is left of the last path, see
+        path: (M, 4), s [m], x, y [m], curvature [1/m]. Where no lane is found: the rest of the last path, see
             `path_age`; of shape (0, 4) where there is no path.
         sorted_left, sorted_right: Boundaries of this call's lane from the car outward [m]; empty where no lane is
             found.
         left_with_virtual, right_with_virtual: The same, since no virtual cones are made up.
-        left_to_right, right_to_left: For each cone the index of the nearest one of the other side, -1 without one within 6.5 m.
+        left_to_right, right_to_left: For each cone the index of the other side's nearest cone; -1 if that is over 6.5 m away.
 
-        Raises ValueError for wrong shapes and for numbers that are not finite; the planner is then as it was before. Also
-            for cones in the car's frame in acceleration and skidpad, or while `vehicle_position` moves.
+        Raises ValueError for wrong shapes and for numbers that are not finite; the planner then stays unchanged. Also for
+            cones in the car's frame in acceleration and skidpad, or while `vehicle_position` moves.
         """
         places, colors = _merge(cones)
         pose = _pose(vehicle_position, vehicle_direction)
@@ -353,8 +353,8 @@ class PathPlanner:
 
     def _boundary(self, ids: IntArray, seen: _Seen, own: Color, other: Color) -> FloatArray:
         """Places of a boundary. Notes where its colours contradict the lane: the lane ends beside the last cone before.
-        Notes too where the lane that is driven, which may be another one, crosses the line between two cones of the
-        own colour."""
+        Also notes where the driven lane, which may be another one, crosses the line between two cones of the own
+        colour."""
         known = [seen[cone] for cone in ids.tolist() if cone in seen]
         places = np.array([place for place, _ in known]).reshape(-1, 2)
         colors = _most_seen(np.array([sightings for _, sightings in known]).reshape(-1, len(Color)))
@@ -441,7 +441,7 @@ def _most_seen(sightings: IntArray) -> IntArray:
 def _first_contradiction(votes: IntArray) -> Optional[int]:
     """Index of the first cone of a stretch whose colours contradict a lane. Votes: 1 of a cone of the other side's
     colour, -1 of one of the own. One cone alone is a miscoloured one: three more votes against are needed in a
-    stretch, two at the end of the boundary, where no cone behind can speak for it."""
+    stretch, two at the end of the boundary, where no later cone can speak for it."""
     total = best = first = begin = 0
     for i, vote in enumerate([*votes.tolist(), 1]):
         if total <= 0:

@@ -30,13 +30,13 @@ FloatArray = NDArray[np.float64]
 class Cones(NamedTuple):
     """Cones as `Detector.detect` takes them: `detect(**cones._asdict(), pose=pose)`.
 
-    cones: (N, 2), positions [m], in the frame of the message.
+    cones: (N, 2), positions [m], in the message's frame of reference.
     colors: (N,), codes of `Color`; or, from PacSim, (N, 5), probabilities of unknown, blue, yellow, small and big
         orange.
     confidences: (N,), None where the message has none.
     ids: (N,), None where the message has none.
-    covariances: (N, 2, 2), of the positions [m^2]. None where the message has none, or only zeros, which is what a
-        message holds that nobody filled.
+    covariances: (N, 2, 2), of the positions [m^2]. None where the message has none, or only zeros, as in a field
+        that nobody filled.
     """
 
     cones: FloatArray
@@ -146,14 +146,14 @@ _PACSIM_SURE = 1e-9  # how far the probability of a class may be below 1 that co
 class Fields(NamedTuple):
     """Where a message has its cones: how `conelane.bags` and the ROS 2 node read types that conelane does not know.
 
-    lists: By the name of a field with a list of cones, the colour of these cones: a name of `Color`, or None where each
-        cone has its own. A sensor_msgs/PointCloud2 has none; its points are the cones, their fields those of a cone.
+    lists: For each field with a list of cones, the colour of these cones: a name of `Color`, or None where each cone has
+        its own. Empty for a sensor_msgs/PointCloud2: its points are the cones, and the fields of a point are those of a cone.
     x, y: The position in a cone [m], such as "point.x".
-    color, colors: Where a cone has its colour, and the name of `Color` for each value; without `colors` it is r, g, b. By
-        default unknown.
-    confidence, id: Where a cone has them, if it has.
+    color, colors: Where a cone has its colour, and the name of `Color` for each value. Without `colors` the colour has
+        the fields r, g, b. Without `color` it is unknown.
+    confidence, id: Where a cone has them, if it does.
     covariance: Where a cone has the covariance of its position [m^2], row by row: 4 numbers (x, y), 9 (x, y, z) or 36
-        (and three angles).
+        (also three angles).
 
     >>> fields = Fields({"cones": None}, x="at.x", y="at.y", color="kind", colors={"b": "blue"})
     >>> fields.read({"cones": [{"at": {"x": 1, "y": 2}, "kind": "b"}]}).colors.tolist()
@@ -173,7 +173,7 @@ class Fields(NamedTuple):
         """The cones of a message, list by list.
 
         Raises ValueError, naming a field that is missing, a colour that `colors` does not have, or a covariance of
-        another size.
+        a wrong size.
         """
         if self.lists:
             parts = [self._part(f"{name}[", _field(message, name), color) for name, color in self.lists.items()]
@@ -244,7 +244,7 @@ def from_eufs(message: Any) -> Cones:
     """Cones of eufs_msgs/ConeArrayWithCovariance, in the order of its lists; small and big orange ones are orange.
 
     message: With the lists blue_cones, yellow_cones, orange_cones, big_orange_cones and unknown_color_cones of cones
-        that have a `point` and, if they know it, a `covariance`: xx, xy, yx, yy.
+        that have a `point` and perhaps a `covariance`: xx, xy, yx, yy.
     Returns without confidences and ids.
     Raises ValueError as `Fields.read`.
 
@@ -318,7 +318,7 @@ def from_pacsim(message: Any) -> Cones:
     probabilities divided by their sum, with those of invisible and of time keeping added to unknown.
 
     message: With a list `detections`, or with `left_lane`, `right_lane` and `unknown`, of landmarks that have
-        `pose.pose.position`, `class_probabilities`, `detection_probability` and, in a track, `id`. If they know it,
+        `pose.pose.position`, `class_probabilities`, `detection_probability`, in a track `id`, and perhaps
         `pose.covariance` with 36 numbers, row by row: x, y, z and three angles.
     Returns with confidences; with ids if each landmark has one.
     Raises ValueError, naming the field that is missing; for other than seven classes, for a covariance of other than 36

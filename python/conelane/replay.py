@@ -24,7 +24,7 @@ __all__ = ["replay"]
 
 
 def _line(plan: Plan) -> Dict[str, Any]:
-    """What `conelane drive --follow` writes of it, as far as the page shows it."""
+    """What `conelane drive --follow` writes of a plan, as far as the page shows it."""
     answer = {key: getattr(plan.answer, key) for key in ("status", "message", "confidence", "stopped_by")}
     return {**{key: getattr(plan, key) for key in ("state", "lap", "phase", "stop", "age_s", "safe_m")}, "answer": answer,
             "points": plan.centre_line.tolist()}
@@ -33,7 +33,7 @@ def _line(plan: Plan) -> Dict[str, Any]:
 def replay(frames: Iterable[Optional[Frame]], planner: Planner, name: str = "run", time_limit_ms: Optional[float] = 50.0) -> str:
     """The page of a run, as text of HTML.
 
-    frames: As of `read_frames`; None where another run begins.
+    frames: As `read_frames` gives them; None where another run begins.
     planner: Drives the run, with `time_limit_ms` for each frame [ms].
     name: Title of the page.
     Raises ValueError as `Planner.update`, and if `frames` is empty.

@@ -3,7 +3,7 @@
     python -m conelane.ros2_node --ros-args -p cones_type:=eufs_msgs/msg/ConeArrayWithCovariance -r cones:=/perception/cones
 
 in   cones, pose, /tf, /tf_static    cones and pose of the types in the parameters cones_type and pose_type (empty: poses of TF)
-out  path, markers, /diagnostics     as of the node for ROS 1 (experiments/examples/ros1)
+out  path, markers, /diagnostics     the same as the node for ROS 1 (experiments/examples/ros1)
 
 More parameters: mission, detector, laps (0: the mission's own), time_limit_ms, mapping (see `conelane.frames.Mapping`).
 """
@@ -17,7 +17,7 @@ from .frames import Mapping, MessageFrames, NoPose, _Sighting
 
 __all__ = ["NodeCore", "messages_of"]
 
-_MOST_POSES = 2000  # of a frame of reference
+_MOST_POSES = 2000  # of each frame of reference
 _LEVELS = {"following": b"\x00", "finished": b"\x00", "lost": b"\x02"}
 _WARN, _ERROR = b"\x01", b"\x02"
 
@@ -34,12 +34,12 @@ class NodeCore:
         """What is to be published: cones may have waited for this pose."""
         try:
             self._maker.add_poses(type_name, message, is_fixed)
-        except ValueError as error:  # no end of the run: the next pose may be one
+        except ValueError as error:  # the run goes on: the next pose may be valid
             return {"/diagnostics": _diagnostics(0, _ERROR, str(error), {})}
         return self._answer(self._waiting, is_last=False)
 
     def on_cones(self, type_name: str, message: Any, received_ns: int) -> Dict[str, Any]:
-        """What is to be published; nothing while the cones wait for a pose. Cones of an earlier message that still wait are given up."""
+        """What is to be published; nothing while these cones wait for a pose. Cones of an earlier message stop waiting."""
         given_up = self._answer(self._waiting, is_last=True)
         self._waiting = None
         try:

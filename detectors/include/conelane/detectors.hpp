@@ -29,7 +29,7 @@ enum class ClosedLanes { never, possible };
 /// What a detector does with the colors of cones. Every detector takes cones of unknown color.
 enum class ColorUse {
     ignored,    ///< the lane is the same for all colors
-    by_weight,  ///< RldParameters::w_color and learned costs weigh them; by default they do not count
+    by_weight,  ///< by RldParameters::w_color and learned costs; by default they do not count
     used,
 };
 
@@ -52,8 +52,8 @@ struct WeightsBytes {
 /// Options of a detector. An absent option keeps the detector's default. An option that the detector does
 /// not use is an error.
 struct DetectorOptions {
-    std::optional<RldParameters> rld_parameters = {};  ///< rld-..., not rld-strip: of the objective
-    std::optional<Pairing> pairing = {};               ///< the same: replaces the parameters' pairing
+    std::optional<RldParameters> rld_parameters = {};  ///< of the objective; rld-... except rld-strip
+    std::optional<Pairing> pairing = {};  ///< the same detectors: replaces the parameters' pairing
     /// All detectors: the lane has only cones among this many nearest ones ahead. At least 1.
     std::optional<std::size_t> nearest = {};
     /// front, front-warm and rld-strip: weights of your own instead of the shipped ones. The path of a file
@@ -61,12 +61,11 @@ struct DetectorOptions {
     std::optional<std::variant<std::filesystem::path, WeightsBytes>> weights = {};
 };
 
-/// The detector of that name. Without options it is the detector that the tables show: a learned detector
-/// has its trained weights, rld-learned the set `learned`, rld-pair and rld-context the defaults of
-/// RldParameters. rld-shape applies with_shape_costs to its parameters. Throws InvalidInput: for an unknown
-/// name, listing the names; for an option or a parameter that is out of range or that the detector does not
-/// use, naming it; and for weights that cannot be read. Detectors are independent of each other; each serves
-/// one thread.
+/// The detector of that name. Without options a learned detector has its shipped weights, rld-learned the
+/// set `learned`, rld-pair and rld-context the defaults of RldParameters. rld-shape applies with_shape_costs
+/// to its parameters. Throws InvalidInput: for an unknown name, listing the names; for an option or a
+/// parameter that is out of range or that the detector does not use, naming it; and for weights that cannot
+/// be read. Detectors are independent of each other; each serves one thread.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(std::string_view name,
                                                           const DetectorOptions& options = {});
 

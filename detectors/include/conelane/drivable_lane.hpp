@@ -10,14 +10,13 @@
 
 namespace conelane {
 
-/// A point of a lane's centre line, in the map frame.
+/// A point of a lane's centre line, in the frame of reference of the cones.
 struct DrivablePoint {
     double s_m = 0.0;  ///< arc length along the centre line from the car's foot point
     Point position{0.0, 0.0};
     double heading_rad = 0.0;    ///< of the driving direction, in (-pi, pi], counter-clockwise, 0 along +x
     double curvature_1pm = 0.0;  ///< [1/m], positive in a left bend
-    /// Distance to the boundary along the normal. Past the end of this boundary the lane keeps its last
-    /// width.
+    /// Distance to the boundary along the normal. Past the boundary's end the lane keeps its last width.
     double width_left_m = 0.0;
     double width_right_m = 0.0;  ///< likewise to the right
 };
@@ -50,8 +49,8 @@ struct DrivableLane {
 
 struct DrivableOptions {
     double step_m = 0.5;  ///< arc length from point to point, in [0.01, 100]
-    /// Length scale of the smoothing, in [0.25, 5]: a wave of the midpoints 2 pi times as long is halved,
-    /// shorter waves nearly vanish; a bend with a radius of twice this length keeps its radius within 2 %.
+    /// In [0.25, 5]. Waves of the midpoints of wavelength 2 pi smoothing_m are halved, shorter ones nearly
+    /// vanish. A bend of radius 2 smoothing_m keeps its radius within 2 %.
     double smoothing_m = 1.75;
     double max_gap_m = 5.5;  ///< longer gaps are reported as bridged; 5 m by the rules, plus noise; > 0
     /// Width of a lane with only one known boundary, in [1, 6.5]. The rules ask for at least 3 m;
@@ -67,17 +66,17 @@ struct DrivableOptions {
 /// the centre line whose direction is within 90 degrees of the car's heading, or the nearest of all if there
 /// is none. If a lane begins ahead of the car, its first point is the foot point.
 ///
-/// If one boundary of an open lane ends first, the lane goes on along the other one and keeps its width: up
-/// to the last place of that one within kMaxLaneWidth_m of the end, its middle not past the line from the end
-/// to that place. In the same way it begins before a boundary that begins later. A lane ends before the first
-/// place where it is narrower than about 0.8 m, where its boundaries cross or where left and right are
-/// swapped; a closed lane is then open.
+/// If one boundary of an open lane ends first, the lane goes on along the other one and keeps its width. P is
+/// the last place of the other boundary within kMaxLaneWidth_m of the end. The lane goes on to P, but its
+/// middle does not cross the line from the end to P. A boundary that begins later is treated likewise. A lane
+/// ends before the first place where it is narrower than about 0.8 m, where its boundaries cross or where
+/// left and right are swapped; a closed lane is then open.
 ///
 /// If one side of an open lane is empty and the other has at least two cones, the empty side is inferred:
 /// beside the known boundary, at default_width_m. `left_inferred` or `right_inferred` says so.
 ///
 /// A lane without extent has no points: no cones, one cone on each side, a closed lane with an empty side,
-/// shorter than 0.5 m, or at the foot point already at its end, too narrow, crossed or swapped. Throws
+/// shorter than 0.5 m, or already at the foot point ended, too narrow, crossed or swapped. Throws
 /// InvalidInput naming the key: an option out of its range, a pose that is not finite, a cone (`left[2]`)
 /// that the lane names twice, that the scene lacks or has twice, that is not finite or is farther than 1000
 /// km from the car in x or y, a boundary longer than 20 km, a closed lane of two sides with fewer than three

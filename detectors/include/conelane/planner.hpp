@@ -51,11 +51,11 @@ struct Plan {
     PlanState state = PlanState::searching;
     /// Begins beside the car. Empty if state is searching or lost, and once the stretch to stop on is driven.
     DrivableLane lane;
-    double safe_m = 0.0;  ///< trusted length of `lane`; of an earlier lane the rest of its trusted length
+    double safe_m = 0.0;  ///< trusted length of `lane`; if bridging, what is left of it
     double age_s = 0.0;   ///< age of the frame that the lane is from; 0 if following
     int lap = 0;          ///< laps driven; in skidpad completed circles, in acceleration 0
     bool stop = false;    ///< the last line is crossed: come to rest before the end of `lane`
-    /// Distance along `lane` to the line behind which the car has to stop; absent while that line is not on
+    /// Distance along `lane` to the line past which the car has to stop; absent while that line is not on
     /// the lane, not known, or crossed.
     std::optional<double> stop_line_m;
     /// Why the course of the lap before is not trusted to its end, or why the path is lost; else empty.
@@ -82,12 +82,12 @@ class Planner {
     virtual ~Planner();
 
     /// Throws InvalidInput if the frame is invalid or the limit is NaN; the planner then stays unchanged. A
-    /// frame without cones is valid. A frame that is not later than the last one changes nothing: the last
-    /// plan is returned again, as bridging instead of following unless the frame is the same.
+    /// frame without cones is valid. A frame that is not later than the last one changes nothing: it returns
+    /// the last plan. Unless the two frames are equal, that plan then says bridging instead of following.
     [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
 
-    /// The whole course, closed, while a lap is known; absent before that, after more than 6 m without a lane
-    /// until the next lap, and in acceleration and skidpad.
+    /// The whole course, closed, while a lap is known; always absent in acceleration and skidpad. After more
+    /// than 6 m driven without a lane, no lap is known until another one is complete.
     [[nodiscard]] virtual std::optional<DrivableLane> course() const = 0;
 
     /// Forgets the run.

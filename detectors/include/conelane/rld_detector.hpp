@@ -15,8 +15,8 @@ namespace conelane {
 struct ConeSet {
     std::optional<std::size_t> nearest;  ///< this many nearest cones ahead; all cones if absent
     /// The lane is searched among this many nearest cones, then cut to the cone set (see cut_to_nearest). So
-    /// the last cone of the cone set is not the end of the lane, where a false cone in line would have no
-    /// rival. Has an effect only if `nearest` is given and smaller.
+    /// a false cone at the far end of the cone set has rivals beyond it. Only if `nearest` is given and
+    /// smaller.
     std::optional<std::size_t> context;
 
     /// Whether lanes are cut.
@@ -40,7 +40,7 @@ struct RldDetectorOptions {
 
 /// A detector by an RLD solver: the lane graph of least cost is the lane. The time limit includes making
 /// problem and program. If the cut lane has no cone on one side, the cone set is solved by itself. Status
-/// none says that the cones that were solved have no lane graph, by any of the values of d_near.
+/// none says that these cones have no lane graph by any of the values of d_near.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_rld_detector(std::unique_ptr<RldSolver> solver,
                                                               const RldDetectorOptions& options);
 

@@ -8,11 +8,11 @@
 
 namespace conelane {
 
-/// Tuned parameters that are part of the library:
-/// - `context`: accuracy of lanes of the 12 nearest cones, found among 24 (the cones of rld-context),
+/// Parameter sets of the library, and what each was tuned for:
+/// - `context`: accuracy of lanes of the 12 nearest cones, searched among 24 (the cones of rld-context),
 /// - `shape`: the same with the costs of the lane's shape,
-/// - `n12`: accuracy of lanes found among the 12 nearest cones,
-/// - `full`: IoU of lanes found among all visible cones at 30 m,
+/// - `n12`: accuracy of lanes searched among the 12 nearest cones,
+/// - `full`: IoU of lanes searched among all visible cones at 30 m,
 /// - `learned`: lanes of all visible cones, by learned costs alone (the detector rld-learned); its weights
 ///   file contains its record.
 ///

@@ -26,7 +26,7 @@ struct SpeedPoint {
     double s_m = 0.0;
     double v_mps = 0.0;
     double a_mps2 = 0.0;  ///< along the car, constant up to the next point or the stop
-    double t_s = 0.0;     ///< since the first point; infinite behind a stop
+    double t_s = 0.0;     ///< since the first point; infinite past a stop
 };
 
 /// The fastest speeds along an open path: a limit by curvature, a pass forward for driving, a pass backward

@@ -21,14 +21,14 @@ struct Lane {
 /// apart, one boundary has gone on without the other.
 inline constexpr double kMaxLaneWidth_m = 6.5;
 
-/// Drops last cones until that of each side is within `widest_m` [m] of the polyline of the other side, or a
-/// side is empty. If both last cones are too far, the left one is dropped first. A closed lane stays
-/// unchanged. Precondition: every id of the lane is a cone of the scene.
+/// Drops cones from the far ends until the last cone of each side is within `widest_m` [m] of the polyline of
+/// the other side, or a side is empty. If both last cones are too far, the left one is dropped first. A
+/// closed lane stays unchanged. Precondition: every id of the lane is a cone of the scene.
 void even_far_ends(Lane& lane, const Scene& scene, double widest_m = kMaxLaneWidth_m);
 
-/// The lane without what lies beyond the `nearest` cones ahead (see nearest_ahead): each boundary ends before
-/// its first cone that is not one of them, then the far ends are evened. A boundary may keep one cone or
-/// none. A lane that was cut is not closed. Precondition: every id of the lane is a cone of the scene.
+/// The lane cut to the `nearest` cones ahead (see nearest_ahead): each boundary ends before its first cone
+/// that is not one of them, then even_far_ends is applied. A boundary may keep one cone or none. A lane that
+/// was cut is not closed. Precondition: every id of the lane is a cone of the scene.
 [[nodiscard]] Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest,
                                   double widest_m = kMaxLaneWidth_m);
 

@@ -31,13 +31,13 @@ struct Optimality {
 /// A lane that a search found.
 struct LaneCandidate {
     Lane lane;
-    std::int64_t iteration;  ///< that found it; where candidates come best first, the rank from 1
+    std::int64_t iteration;  ///< which found it; if candidates are sorted best first, the rank from 1
     std::optional<double> confidence = {};  ///< probability that the lane is usable
 };
 
 struct Enumeration {
     std::int64_t iterations;
-    bool complete;  ///< no limit and no beam cut the search short; of clc, from the starts tried
+    bool complete;  ///< no limit and no beam cut the search short; for clc: from the starts tried
     std::vector<LaneCandidate> candidates;  ///< as found, or best first; empty without keep_candidates
 };
 
@@ -54,7 +54,7 @@ struct SolvedLane {
 /// apart if a scene has many of them, see LaneDetector::doubled_cone_m.
 inline constexpr double kDoubledCone_m = 0.12;
 
-/// A cone that a detector left out, because it is within the detector's doubled_cone_m of another one.
+/// A cone that a detector left out, because another cone is within the detector's doubled_cone_m.
 struct MergedCone {
     ConeId cone;
     ConeId into;  ///< represents both cones in the lane: the one nearer to the car (ties: the smaller id)
@@ -68,13 +68,13 @@ struct LaneAnswer {
     LaneStatus status = LaneStatus::stopped;
     Lane lane;
     std::string message;
-    /// The limit that ended the search. Absent if it ended by itself: the lane is the detector's best. With
-    /// status stopped, `iterations` also stands for lanes that a beam left out, or an undrivable lane.
+    /// The limit that ended the search. Absent if no limit did: the lane is the detector's best.
+    /// With status stopped, `iterations` may also mean that a beam left lanes out, or that the lane cannot be
+    /// driven.
     std::optional<StopReason> stopped_by;
     std::optional<double> confidence;  ///< probability that the lane is usable
-    /// Distance [m] along the lane up to which it can be trusted. Every lane of a detector from
-    /// `make_detector` has one. With a confidence it follows from probabilities. Without one it is the
-    /// smallest of the lane's length, the way to its first BridgedGap, and 10 m.
+    /// Trusted length [m], of every lane that a detector of `make_detector` finds. With a confidence it comes
+    /// from probabilities. Otherwise it is the least of lane length, way to the first BridgedGap, and 10 m.
     std::optional<double> trusted_m;
     std::optional<Optimality> optimality;  ///< of `lane` itself
     std::optional<SolvedLane> solved;      ///< only after a cut to the cone set, or by another d_near
@@ -103,7 +103,7 @@ class LaneDetector {
     [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
 
     /// Cones at most this far apart [m] are one cone for this detector. Cones farther apart than
-    /// kDoubledCone_m are merged only if there are three such merges, and one for each ten cones kept.
+    /// kDoubledCone_m are merged only if such merges are at least three, and one for each ten cones kept.
     [[nodiscard]] double doubled_cone_m() const;
 
     /// Forgets earlier scenes.

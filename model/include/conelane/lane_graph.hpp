@@ -30,8 +30,8 @@ struct LaneGraph {
 };
 
 /// The simple paths that the edges form, each as cone indices from the end with the smaller index, ordered by
-/// that index. Nothing if the edges hold a cycle, an edge that is a loop or there twice, a cone of
-/// degree above two or an index not below `cone_count`.
+/// that index. Nothing if the edges hold a cycle, a loop, an edge twice, a cone of degree above two or an
+/// index not below `cone_count`.
 [[nodiscard]] std::optional<std::vector<std::vector<std::size_t>>> paths(const LaneGraph& graph,
                                                                          std::size_t cone_count);
 

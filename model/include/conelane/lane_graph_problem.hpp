@@ -35,7 +35,7 @@ struct ProblemEdge {
     /// learned_end_cost of i and of j.
     double cost;
     bool along_heading;         ///< h_ij of (9)
-    bool high_cost;             ///< never chosen, by (27) without a gap, by k_edge, or under 1e-100 m long
+    bool high_cost;             ///< forbidden: by (27) unless `gap`, by k_edge, or shorter than 1e-100 m
     bool gap = false;           ///< s_ij > s_crit, but d_gap allows it over a gap
     double learned_cost = 0.0;  ///< of the edge alone; 0 if it is high_cost
 };
@@ -48,7 +48,7 @@ struct ProblemTurn {
     double angle_cost;  ///< t_ijk (20), without weight
     double unevenness;  ///< u_ijk, without weight; 0 if w_u is 0
     double cost;        ///< w_t t_ijk + w_u u_ijk + 2 w_n z_j + learned_cost - 2 learned_end_cost of j; >= 0
-    bool high_cost;     ///< edges never chosen together: t_ijk > t_crit (28), or theta_gap at a gap
+    bool high_cost;     ///< forbidden: t_ijk > t_crit (28), or more than theta_gap at a gap
     double learned_cost = 0.0;  ///< of the turn alone, not negative; 0 if it or an edge is high_cost
 };
 
@@ -67,11 +67,11 @@ struct LaneGraphProblem {
     std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
     std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< first < second: (6)-(8), or crossing
     std::vector<bool> near;                                      ///< r_i of (11), with d_side
-    /// The edges that v_ij looks for a facing edge among: all within s_crit, also those that k_edge excludes.
+    /// Edges among which v_ij looks for a facing edge: all within s_crit, also those that k_edge excludes.
     /// Empty if no cost needs them.
     std::vector<Edge> facers;
-    /// z_i of formulation.md; 0 for a far cone, and if w_n is 0. m_i = A_i - 2 (turns at i) is 1 if a path
-    /// ends at i, else 0. So - w_n sum_i z_i m_i is a cost of edges and turns; solvers need no term for it.
+    /// z_i of formulation.md; 0 for a far cone, and if w_n is 0. m_i = degree - 2 (turns at i) is 1 if a path
+    /// ends at i, else 0. So the costs of edges and turns include (-w_n) sum_i z_i m_i.
     std::vector<double> near_end_fit;
     /// By cone: the learned cost if a path ends there, at most 0. It is a cost of edges and turns likewise.
     std::vector<double> learned_end_cost;

@@ -55,7 +55,7 @@ struct PartNetworks {
         return networks[static_cast<std::size_t>(part)];
     }
     [[nodiscard]] LearnedNetwork& of(Part part) { return networks[static_cast<std::size_t>(part)]; }
-    /// All 0, with so many hidden units in each network.
+    /// All 0, with `units` hidden units in each network.
     [[nodiscard]] static PartNetworks zero(std::size_t units = 0) {
         PartNetworks costs;
         for (const Part part : kParts)

@@ -17,7 +17,7 @@ enum class Pairing {
 [[nodiscard]] std::string_view to_string(Pairing pairing);
 
 /// The symbols of the RLD paper. The paper prints no values; the defaults were found by hand on recorded
-/// tracks. d_max is the widest lane: with a larger value one boundary may go on alone.
+/// tracks. The default of d_max is the widest lane. If d_max is larger, one boundary may go on alone.
 struct RldParameters {
     double d_e = 3.2;                   ///< expected spacing of a boundary's cones [m]
     double d_t = 1.7;                   ///< the spacing cost (18) is 1 this far from d_e [m]
@@ -54,12 +54,12 @@ struct RldParameters {
     // Edges over gaps, where a cone of a boundary is missing; off by default.
     double d_gap = 0.0;      ///< longest edge allowed though s_crit forbids it [m]; off at 0
     double theta_gap = 0.4;  ///< largest angle from straight on of a turn with such an edge [rad]
-    double d_clear = 0.0;    ///< no cone between its ends and this far from both is nearer to its line [m]
+    double d_clear = 0.0;    ///< cones between its ends are this far from its line, or this near an end [m]
 
     double d_side = 0.0;  ///< a near endpoint is at most this far from the car's axis [m]; off at 0
 
     // An edge joins two cones, one of which is among the nearest cones of the other; off at 0.
-    double nearest_of_edge = 0.0;  ///< k_edge: fewer cones than this are nearer to one end than the other is
+    double nearest_of_edge = 0.0;  ///< k_edge: one end is among this many nearest cones of the other
     double nearest_of_gap = 0.0;   ///< k_gap: the same for an edge over a gap
 
     /// Costs from learned_costs.hpp, added to those above; none by default. Not changed after it is set.

@@ -12,7 +12,7 @@ namespace conelane {
 
 using ConeId = std::int64_t;
 
-/// Position and heading of the car in the map frame; yaw counter-clockwise, 0 along +x.
+/// Position and heading of the car in the frame of reference of the cones; yaw counter-clockwise, 0 along +x.
 struct Pose {
     Point position{0.0, 0.0};  ///< [m]
     double yaw_rad = 0.0;
@@ -25,7 +25,7 @@ struct Pose {
     [[nodiscard]] double left_m(const Point& point) const;
 };
 
-/// `orange` is a cone of either size; the planner takes the start line from `big_orange` cones first.
+/// `orange` does not tell the size; as start line the planner prefers `big_orange` cones.
 enum class ConeColor { unknown, blue, yellow, orange, big_orange };
 [[nodiscard]] std::string_view to_string(ConeColor color);
 [[nodiscard]] constexpr bool is_orange(ConeColor color) {
@@ -47,7 +47,7 @@ struct ColorProbabilities {
 /// The most probable color, small and big orange together; unknown if two colors are equally probable.
 [[nodiscard]] ConeColor most_probable_color(const ColorProbabilities& probabilities);
 
-/// Covariance of the measured position of a cone, in the map frame [m^2].
+/// Covariance of the measured position of a cone [m^2].
 struct PositionCovariance {
     double xx_m2 = 0.0;
     double xy_m2 = 0.0;
@@ -62,14 +62,13 @@ struct PositionCovariance {
 
 struct Cone {
     ConeId id = 0;
-    Point position{0.0, 0.0};  ///< [m], map frame
+    Point position{0.0, 0.0};  ///< [m]
     ConeColor color = ConeColor::unknown;
     double confidence = 1.0;  ///< of the detection, in [0, 1]
     /// Class probabilities. If present, `front`, `front-warm` and ProblemEdge::color_cost use them instead of
     /// `color`. The planner and the learned feature `same_color` use `color` alone.
     std::optional<ColorProbabilities> color_probabilities{};
-    /// How uncertain the position is. Only `front` and `front-warm` use it. Absent: unknown, which gives the
-    /// same answers as 0.
+    /// How uncertain the position is. Only `front` and `front-warm` use it. Absent: same answers as with 0.
     std::optional<PositionCovariance> position_covariance{};
 
     /// `color_probabilities`, or else those of `color`.
@@ -87,7 +86,7 @@ struct Scene {
 
 /// Throws InvalidInput, naming the key, if a number is not finite, a confidence or a probability is outside
 /// [0, 1], the probabilities of a cone add up to less than 0.999 or more than 1.001, a covariance is not
-/// valid, or an id occurs twice. A scene without cones is valid: it has no lane.
+/// valid, or an id occurs twice. A scene without cones is valid; scenes files refuse it.
 void validate(const Scene& scene);
 /// The same, with `ids` as workspace: it allocates only if `ids` has too little capacity.
 void validate(const Scene& scene, std::vector<ConeId>& ids);

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-/// The limit that ended a search before its own end.
+/// The limit that cut a search short.
 enum class StopReason { time, iterations, memory };
 [[nodiscard]] std::string_view to_string(StopReason reason);
 

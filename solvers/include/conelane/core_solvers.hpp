@@ -16,9 +16,9 @@ enum class SolverTrait : unsigned {
     none = 0,
     exact = 1U << 0U,               ///< proves its optimum; others are heuristics and never claim one
     uses_formulation = 1U << 1U,    ///< others ignore the formulation
-    suits_paper = 1U << 2U,         ///< fast with Formulation::paper of 12 cones; others take seconds
+    suits_paper = 1U << 2U,         ///< fast with Formulation::paper and 12 cones; others take seconds
     reads_time_of_day = 1U << 3U,   ///< a clock that is set during a solve changes its time limit
-    refuses_huge_costs = 1U << 4U,  ///< status error and a message at costs of 1e25, or 1e14 with Clp
+    refuses_huge_costs = 1U << 4U,  ///< status error and a message from costs of 1e25 on, with Clp 1e14
     tuned = 1U << 5U,               ///< its library has other settings than the default ones
 };
 [[nodiscard]] constexpr SolverTrait operator|(SolverTrait a, SolverTrait b) {

@@ -14,8 +14,8 @@ class RldSolver {
     /// The extent that problems for `solve` have to be made with.
     [[nodiscard]] virtual EdgeExtent extent() const { return EdgeExtent::candidates; }
 
-    /// The time limit includes building the program. A problem or a program that is too large (is_too_large,
-    /// kMaxProgramEntries) gives status stopped by memory. Invalid limits (see `invalidity`), a failing
+    /// The time limit includes building the program. A problem that is_too_large, or a program of more than
+    /// 4'000'000 entries, gives status stopped by memory. Invalid limits (see `invalidity`), a failing
     /// backend and more cones than RldSolverEntry::max_cones give status error and a message.
     ///
     /// Every answer is verified against the problem (model/answer_verification.hpp), to 1e-6 max(1, |cost|).

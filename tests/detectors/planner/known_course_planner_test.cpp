@@ -86,7 +86,7 @@ TEST(KnownCoursePlanner, SkidpadIsDrivenInOrderToTheStop) {
             if (car.s_m() > 4.0 * kCircle_m + 3.0) {
                 EXPECT_EQ(plan.state, PlanState::finished);
                 EXPECT_TRUE(plan.stop);
-                // What is left ends within 25 m behind the line.
+                // What is left ends within 25 m past the line.
                 EXPECT_NEAR(car.s_m() + plan.lane.length_m, 4.0 * kCircle_m + 25.0, 1.0);
             }
             if (car.s_m() > -15.0) {

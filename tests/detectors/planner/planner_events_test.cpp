@@ -65,7 +65,7 @@ double course_error_m(const DrivableLane& line, const DrivenCourse& course) {
     return farthest_m;
 }
 
-/// Expects a stop at most so far behind the line: a stop before it loses the run.
+/// Expects a stop at most so far past the line: a stop before it loses the run.
 void expect_stop_behind_line(const Told& told, const DrivenCourse& course, double within_m) {
     ASSERT_TRUE(told.stop_m);
     EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
@@ -85,7 +85,7 @@ TEST(PlannerEvent, LapsAreCountedAtTheLineAndTheLastOneEndsTheRun) {
     expect_stop_behind_line(told, course, 5.0);
     EXPECT_EQ(told.last.state, PlanState::finished);
     EXPECT_EQ(told.last.lap, 2);
-    // The rest of the path ends within 30 m behind the line.
+    // The rest of the path ends within 30 m past the line.
     EXPECT_GT(told.last.lane.length_m, 5.0);
     EXPECT_LE(told.last.lane.length_m, 30.0 - 5.0);
 }
