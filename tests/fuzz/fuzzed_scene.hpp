@@ -14,7 +14,7 @@ namespace conelane::fuzz {
 /// Any finite number, the rare ones as likely as the usual ones.
 inline double any_number(FuzzedDataProvider& input) {
     double value = 0.0;
-    const std::uint64_t bits = input.ConsumeIntegral<std::uint64_t>();
+    const auto bits = input.ConsumeIntegral<std::uint64_t>();
     static_assert(sizeof(value) == sizeof(bits));
     __builtin_memcpy(&value, &bits, sizeof(value));
     return std::isfinite(value) ? value : 0.0;
@@ -37,7 +37,7 @@ inline Point place_of_cone(FuzzedDataProvider& input, const std::vector<Point>& 
     switch (place) {
         case Place::lane: {
             const double side = earlier.size() % 2 == 0 ? 1.0 : -1.0;
-            const double along = static_cast<double>(earlier.size() / 2);
+            const auto along = static_cast<double>(earlier.size() / 2);
             const double sideways_m = 0.3 * usual_length_m(input);
             return {1.0 + 3.2 * along + 0.1 * usual_length_m(input), 1.8 * side + sideways_m};
         }
@@ -135,7 +135,7 @@ inline RldParameters fuzzed_parameters(FuzzedDataProvider& input) {
         for (const RldParameterField& field : fields) {
             if (input.ConsumeIntegral<std::uint8_t>() < 224) continue;
             const double highest = std::min(field.highest, 100.0);
-            const double share = input.ConsumeProbability<double>();
+            const auto share = input.ConsumeProbability<double>();
             parameters.*field.value = field.lowest + share * share * share * (highest - field.lowest);
         }
     }

@@ -29,7 +29,7 @@ class ScratchFolder {
 
     /// The file with exactly these bytes.
     [[nodiscard]] std::filesystem::path write(std::string_view name, std::string_view bytes) const {
-        const std::filesystem::path file = path_ / name;
+        std::filesystem::path file = path_ / name;
         std::ofstream(file, std::ios::binary) << bytes;
         return file;
     }

@@ -161,8 +161,8 @@ TEST(OnlineLaneWidth, EqualsTheDefinitionAfterEveryStepOfARandomLane) {
                     ASSERT_NEAR(vertex_width_m(width, side, i), expected.of_vertex_m[side][i], 1e-6);
                     narrowest_m = std::min(narrowest_m, expected.of_vertex_m[side][i]);
                 }
-                for (std::size_t i = 0; i < expected.of_segment_m[side].size(); ++i)
-                    narrowest_m = std::min(narrowest_m, expected.of_segment_m[side][i]);
+                for (const double width_m : expected.of_segment_m[side])
+                    narrowest_m = std::min(narrowest_m, width_m);
                 ASSERT_EQ(
                     width.state().too_wide[side],
                     std::ranges::count_if(expected.of_vertex_m[side], [](double w) { return w >= kWMax_m; }));

@@ -118,7 +118,6 @@ TEST(FrontFeatures, ABoundaryOfOneConeHasNoSegment) {
 
 constexpr ConeColor kBlue = ConeColor::blue;
 constexpr ConeColor kYellow = ConeColor::yellow;
-constexpr ConeColor kUnknown = ConeColor::unknown;
 
 /// The left boundary 0, 1, 2 with a cone 6 beside its second segment, the right one 3, 4, 5:
 ///     0 ----- 1 --6-- 2
