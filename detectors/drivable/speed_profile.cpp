@@ -57,6 +57,13 @@ std::vector<SpeedPoint> speed_profile(const DrivableLane& path, const VehicleLim
             std::sqrt(v_mps * v_mps + 2.0 * a_mps2 * (profile[i + 1].s_m - profile[i].s_m));
         profile[i + 1].v_mps = std::min(profile[i + 1].v_mps, reached_mps);
     }
+    // The stop may be behind the last point, where the path ends between two points or further on.
+    if (const double rest_m = task.stop_at_m - points.back().s_m; rest_m > 0.0 && std::isfinite(rest_m)) {
+        const double bend_1pm = points.back().curvature_1pm;
+        SpeedPoint& last = profile.back();
+        last.v_mps = std::min(last.v_mps, before_braking_mps(0.0, rest_m, bend_1pm, bend_1pm, limits));
+        last.a_mps2 = -last.v_mps * last.v_mps / (2.0 * rest_m);
+    }
     for (std::size_t i = profile.size() - 1; i-- > 0;) {
         const double next_m = std::min(profile[i + 1].s_m, task.stop_at_m);  // the stop may be in this step
         const double step_m = std::max(0.0, next_m - profile[i].s_m);

@@ -177,13 +177,8 @@ class KnownCoursePlanner final : public Planner {
 Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limits) {
     const Deadline deadline(limits.time_limit_ms);
     const Scene scene = checked_scene(frame, limits);
-    if (run_.frame && frame.time_s <= run_.frame->time_s) {
-        Plan plan = run_.last;
-        // The same frame again has the same answer; another one says nothing new.
-        if (!is_same(frame, *run_.frame) && plan.state == PlanState::following)
-            plan.state = PlanState::bridging;
-        return plan;
-    }
+    if (run_.frame && frame.time_s <= run_.frame->time_s)
+        return plan_not_later(run_.last, *run_.frame, frame);
     if (!run_.frame) run_.first_pose = frame.pose;
     run_.seen.observe(frame);
     const SeenView view = view_of(frame);

@@ -103,14 +103,8 @@ class LapPlanner final : public Planner {
 
 Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     static_cast<void>(checked_scene(frame, limits));  // throws if the frame or a limit is invalid
-    if (run_.frame && frame.time_s <= run_.frame->time_s) {
-        // The same frame has the same answer. An older frame, or one of a clock that stands still, cannot be
-        // trusted.
-        Plan plan = run_.last;
-        if (!is_same(frame, *run_.frame) && plan.state == PlanState::following)
-            plan.state = PlanState::bridging;
-        return plan;
-    }
+    if (run_.frame && frame.time_s <= run_.frame->time_s)
+        return plan_not_later(run_.last, *run_.frame, frame);
     run_.frame = frame;
     if (const auto shift = run_.cones.observe(frame)) {
         run_.path.move_along(*shift);

@@ -3,7 +3,9 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/planners.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace conelane {
 namespace {
@@ -16,6 +18,14 @@ template <typename Value>
 std::string_view name_of(Value value, std::span<const std::string_view> names) {
     const auto place = static_cast<std::size_t>(value);
     return place < names.size() ? names[place] : "";
+}
+
+/// Whether a frame came twice: the same time, pose and cones.
+bool is_same(const Frame& a, const Frame& b) {
+    return a.time_s == b.time_s && a.pose.position == b.pose.position && a.pose.yaw_rad == b.pose.yaw_rad &&
+           std::ranges::equal(a.cones, b.cones, [](const Cone& one, const Cone& other) {
+               return one.id == other.id && one.position == other.position && one.color == other.color;
+           });
 }
 
 }  // namespace
@@ -70,11 +80,14 @@ Scene checked_scene(const Frame& frame, const DetectionLimits& limits) {
     return scene;
 }
 
-bool is_same(const Frame& a, const Frame& b) {
-    return a.time_s == b.time_s && a.pose.position == b.pose.position && a.pose.yaw_rad == b.pose.yaw_rad &&
-           std::ranges::equal(a.cones, b.cones, [](const Cone& one, const Cone& other) {
-               return one.id == other.id && one.position == other.position && one.color == other.color;
-           });
+Plan plan_not_later(const Plan& last, const Frame& last_frame, const Frame& frame) {
+    Plan plan = last;
+    if (is_same(frame, last_frame)) return plan;
+    const double moved_m = (frame.pose.position - last_frame.pose.position).norm();
+    plan.safe_m = std::max(0.0, plan.safe_m - moved_m);
+    if (plan.state == PlanState::following) plan.state = PlanState::bridging;
+    if (plan.state == PlanState::bridging) plan.reason = "the frame is not later than the one before";
+    return plan;
 }
 
 void validate_shared(const PlannerOptions& options) {

@@ -24,8 +24,9 @@ namespace conelane {
 /// is not a number.
 [[nodiscard]] Scene checked_scene(const Frame& frame, const DetectionLimits& limits);
 
-/// Whether a frame came twice: the same time, pose and cones.
-[[nodiscard]] bool is_same(const Frame& a, const Frame& b);
+/// The plan of a frame that is not later than the last one: that of the last one, whose trusted length ends
+/// where it ended, and only `bridging` unless the two frames are equal.
+[[nodiscard]] Plan plan_not_later(const Plan& last, const Frame& last_frame, const Frame& frame);
 
 /// Throws InvalidInput naming an option that is invalid for every mission: max_age_s or one of `drivable`.
 void validate_shared(const PlannerOptions& options);

@@ -346,7 +346,8 @@ The plan of the next frame.
 cones: (N, 2), positions x, y [m] of what the car sees now, or of its map, in the frame of reference of `pose`. N may be 0.
 pose: (3,), the car in a fixed map: x, y [m] and yaw [rad].
 time_s: Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
-    nothing: it returns the last plan. Unless the two frames are equal, "following" then becomes "bridging".
+    nothing: it returns the last plan. Unless the two frames are equal, "following" then becomes "bridging", and
+    `safe_m` is less by the distance between the two poses.
 ids: (N,), distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised
     by its place.
 colors: As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both

@@ -299,11 +299,8 @@ TEST_F(LongRun, DetectorsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
         const auto others = answers(folder + "/other.n014.lanes.jsonl");
         const auto expected = answers("whole/clc.n014.lanes.jsonl");
         ASSERT_EQ(others.size(), expected.size());
-        std::size_t errors = 0;
-        for (std::size_t k = 0; k < others.size(); ++k) {
-            if (others[k].second == LaneStatus::error) ++errors;
-        }
-        EXPECT_EQ(errors, 1U) << "one fault, one scene";
+        const auto is_error = [](const auto& other) { return other.second == LaneStatus::error; };
+        EXPECT_EQ(std::ranges::count_if(others, is_error), 1) << "one fault, one scene";
         EXPECT_EQ(answers(folder + "/clc.n014.lanes.jsonl"), expected);
     }
 }

@@ -16,8 +16,8 @@ namespace {
 /// Calls `find` alone and then in four threads at once; expects the same results, which it returns.
 template <typename Find>
 auto same_in_threads(const Find& find) {
-    const auto alone = find();
-    std::vector<std::remove_const_t<decltype(alone)>> together(4);
+    auto alone = find();
+    std::vector<decltype(alone)> together(4);
     {
         std::vector<std::jthread> threads;
         for (auto& of_thread : together) threads.emplace_back([&] { of_thread = find(); });

@@ -58,7 +58,8 @@ struct Plan {
     /// Distance along `lane` to the line past which the car has to stop; absent while that line is not on
     /// the lane, not known, or crossed.
     std::optional<double> stop_line_m;
-    /// Why the course of the lap before is not trusted to its end, or why the path is lost; else empty.
+    /// Why the course of the lap before is not trusted to its end, why the path is lost, or that the frame is
+    /// not later than the one before; else empty.
     std::string_view reason;
     std::string_view phase;  ///< skidpad: approach, right 1, right 2, left 1, left 2, exit; else empty
     LaneAnswer answer;       ///< the detector's, to this frame; a cone without an id has one from the planner
@@ -83,7 +84,8 @@ class Planner {
 
     /// Throws InvalidInput if the frame is invalid or the limit is NaN; the planner then stays unchanged. A
     /// frame without cones is valid. A frame that is not later than the last one changes nothing: it returns
-    /// the last plan. Unless the two frames are equal, that plan then says bridging instead of following.
+    /// the last plan. Unless the two frames are equal, that plan then says bridging instead of following, and
+    /// safe_m is less by the distance between the two poses.
     [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
 
     /// The whole course, closed, while a lap is known; always absent in acceleration and skidpad. After more

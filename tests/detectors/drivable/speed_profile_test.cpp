@@ -58,13 +58,15 @@ TEST(SpeedProfile, StopsBetweenTwoPointsAndCountsTheTime) {
     EXPECT_TRUE(speed_profile({}).empty());
 }
 
-TEST(SpeedProfile, BrakesToAStopBetweenTwoPoints) {
-    for (const double stop_m : {0.5, 1.01, 2.5}) {
+TEST(SpeedProfile, BrakesToAStopBetweenTwoPointsAndBehindTheLastOne) {
+    for (const double stop_m : {0.5, 1.01, 2.5, 40.3}) {
         const auto profile = speed_profile(path([](double) { return 0.0; }), {}, {3.0, stop_m});
         double square = std::pow(profile.front().v_mps, 2);
         std::size_t i = 0;
-        for (; profile[i].s_m < stop_m; ++i)
-            square += 2.0 * profile[i].a_mps2 * (std::min(profile[i + 1].s_m, stop_m) - profile[i].s_m);
+        for (; i < profile.size() && profile[i].s_m < stop_m; ++i) {
+            const double next_m = i + 1 < profile.size() ? std::min(profile[i + 1].s_m, stop_m) : stop_m;
+            square += 2.0 * profile[i].a_mps2 * (next_m - profile[i].s_m);
+        }
         EXPECT_NEAR(square, 0.0, 1e-9) << stop_m;
     }
 }

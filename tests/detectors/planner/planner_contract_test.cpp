@@ -183,6 +183,9 @@ TEST_P(PlannerContract, FramesThatComeTwiceAreAnsweredTwiceAndOldOnesAreFlagged)
         if (i < 3) continue;
         const Plan late = planner->update(frame(i - 3), kNoTimeLimit);
         EXPECT_NE(late.state, PlanState::following);
+        EXPECT_EQ(late.reason.empty(), late.state != PlanState::bridging && plan.reason.empty());
+        const double moved_m = (frame(i).pose.position - frame(i - 3).pose.position).norm();
+        EXPECT_EQ(late.safe_m, std::max(0.0, plan.safe_m - moved_m));
         EXPECT_EQ(late.lane.points.size(), plan.lane.points.size());
     }
 }

@@ -18,7 +18,8 @@ constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 
 /// The frontiers of a problem, with random multipliers.
 struct Frontiers {
-    Frontiers(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
+    Frontiers(LaneGraphProblem lane_graph_problem, std::uint64_t seed)
+        : problem(std::move(lane_graph_problem)) {
         graph.build(problem, clock);
         system = tests::near_to_far(graph);
         residual.assign(graph, system.kinds[0].start, clock);
