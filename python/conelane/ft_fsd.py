@@ -207,7 +207,7 @@ class PathPlanner:
     - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
       where no cone is. The path also ends, but not in its first 3 m, where colours contradict the lane: where in a
       stretch of a side three more cones have the other side's colour than this side's (two more at the side's end), and
-      before it crosses the line between two successive cones of a side in this side's colour. A single contradicting
+      before it crosses a line between successive cones of a side that have this side's colour. A single contradicting
       cone counts as miscoloured.
     - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones. In acceleration and
       skidpad, once their place is found, the path is that of the rules, laid onto the cones, and the sorted arrays are
