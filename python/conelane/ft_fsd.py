@@ -196,7 +196,7 @@ class PathPlanner:
 
     What differs from ft-fsd-path-planning:
 
-    - **No path is an array of no rows**, shape (0, 4): where no lane was found yet, or none for more than
+    - **Without a path the array has no rows**, shape (0, 4): where no lane was found yet, or none for more than
       `max_path_age` calls, or where nothing of the last path lies ahead of the car. A controller brakes then. As long
       as the plan has a path, there are rows.
     - `path_age` flags a path of an earlier call. Then its rest is returned: from beside the car to where the earlier
