@@ -123,8 +123,8 @@ void add_answer(Class<Object>& object, Steps... steps) {
     object
         .get(
             "status",
-            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before a lane
-that can be driven was found; "error": see `message`.)",
+            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": no lane that can be driven was found,
+see `stopped_by` and `message`; "error": see `message`.)",
             steps..., &LaneAnswer::status, kName)
         .get("found", "bool: whether the status is \"found\"", steps..., &LaneAnswer::status,
              [](LaneStatus status) { return status == LaneStatus::found; })

@@ -48,7 +48,7 @@ class Mapping(NamedTuple):
     """What conelane has to be told of a log or a system where the messages do not show it.
 
     cones, pose: Topics. Needed if there are several, and for cones of MarkerArray and PointCloud2.
-    map_frame: Frame of reference of the run. By default the root of the tree of TF that has the car's.
+    map_frame: Frame of reference of the run. By default the root of the TF tree with the car's frame.
     car_frame: The car's frame of reference. By default the child of Odometry, else "base_link" or "base_footprint".
     cones_frame: Frame of reference of the cones. By default that of their header; without a header the map's.
     types: A dict from names of message types, such as "my_msgs/Cones", to `Fields`.

@@ -196,7 +196,7 @@ class PathPlanner:
 
     What differs from ft-fsd-path-planning:
 
-    - **No path is an array of no rows**, shape (0, 4): where no lane was found yet, or none for more than
+    - **Without a path the array has no rows**, shape (0, 4): where no lane was found yet, or none for more than
       `max_path_age` calls, or where nothing of the last path lies ahead of the car. A controller brakes then. As long
       as the plan has a path, there are rows.
     - `path_age` flags a path of an earlier call. Then its rest is returned: from beside the car to where the earlier
@@ -207,7 +207,7 @@ class PathPlanner:
     - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
       where no cone is. The path also ends, but not in its first 3 m, where colours contradict the lane: where in a
       stretch of a side three more cones have the other side's colour than this side's (two more at the side's end), and
-      before it crosses the line between two successive cones of a side in this side's colour. A single contradicting
+      before it crosses a line between successive cones of a side that have this side's colour. A single contradicting
       cone counts as miscoloured.
     - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones. In acceleration and
       skidpad, once their place is found, the path is that of the rules, laid onto the cones, and the sorted arrays are

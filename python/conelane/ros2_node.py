@@ -5,7 +5,7 @@
 in   cones, pose, /tf, /tf_static    cones and pose of the types in the parameters cones_type and pose_type (empty: poses of TF)
 out  path, markers, /diagnostics     the same as the node for ROS 1 (experiments/examples/ros1)
 
-More parameters: mission, detector, laps (0: the mission's own), time_limit_ms, mapping (see `conelane.frames.Mapping`).
+More parameters: mission, detector, laps (0: the mission's own), time_limit_ms, mapping (YAML file, `conelane.frames.Mapping`).
 """
 from __future__ import annotations
 

@@ -67,20 +67,20 @@ struct DrivableOptions {
 /// is none. If a lane begins ahead of the car, its first point is the foot point.
 ///
 /// If one boundary of an open lane ends first, the lane goes on along the other one and keeps its width. P is
-/// the last place of the other boundary within kMaxLaneWidth_m of the end. The lane goes on to P, but its
-/// middle does not cross the line from the end to P. A boundary that begins later is treated likewise. A lane
-/// ends before the first place where it is narrower than about 0.8 m, where its boundaries cross or where
-/// left and right are swapped; a closed lane is then open.
+/// the last place of the other boundary within kMaxLaneWidth_m of that end. The lane goes on to P, but its
+/// middle does not cross the line from that end to P. A boundary that begins later is treated likewise. A
+/// lane ends before the first place where it is narrower than about 0.8 m, where its boundaries cross or
+/// where left and right are swapped; a closed lane is then open.
 ///
 /// If one side of an open lane is empty and the other has at least two cones, the empty side is inferred:
 /// beside the known boundary, at default_width_m. `left_inferred` or `right_inferred` says so.
 ///
-/// A lane without extent has no points: no cones, one cone on each side, a closed lane with an empty side,
-/// shorter than 0.5 m, or already at the foot point ended, too narrow, crossed or swapped. Throws
-/// InvalidInput naming the key: an option out of its range, a pose that is not finite, a cone (`left[2]`)
-/// that the lane names twice, that the scene lacks or has twice, that is not finite or is farther than 1000
-/// km from the car in x or y, a boundary longer than 20 km, a closed lane of two sides with fewer than three
-/// cones on one. Successive cones at one place count as one. The same input gives the same output.
+/// A lane without extent has no points: no cones; one cone on each side; closed with an empty side; shorter
+/// than 0.5 m; at the foot point already ended, too narrow, crossed or swapped. Throws InvalidInput naming
+/// the key: an option out of its range, a pose that is not finite, a cone (`left[2]`) that the lane names
+/// twice, that the scene lacks or has twice, that is not finite or is farther than 1000 km from the car in x
+/// or y, a boundary longer than 20 km, a closed lane of two sides with fewer than three cones on one.
+/// Successive cones at one place count as one. The same input gives the same output.
 [[nodiscard]] DrivableLane drivable(const Lane& lane, const Scene& scene,
                                     const DrivableOptions& options = {});
 

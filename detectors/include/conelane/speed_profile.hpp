@@ -31,8 +31,8 @@ struct SpeedPoint {
 
 /// The fastest speeds along an open path: a limit by curvature, a pass forward for driving, a pass backward
 /// for braking. If the first speed is below `v_now_mps`, the car is too fast and has to brake at once.
-/// One point for each of the path. Throws InvalidInput naming a limit that is not positive and finite, a
-/// task that is negative or NaN, or a curvature that is not finite.
+/// One speed for each point of the path. Throws InvalidInput naming a limit that is not positive and finite,
+/// a task that is negative or NaN, or a curvature that is not finite.
 [[nodiscard]] std::vector<SpeedPoint> speed_profile(const DrivableLane& path,
                                                     const VehicleLimits& limits = {},
                                                     const SpeedTask& task = {});

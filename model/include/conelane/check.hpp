@@ -18,7 +18,7 @@ struct CheckReport {
     /// index beyond the scene's cones.
     std::optional<double> objective;
     std::size_t along_heading = 0;  ///< edges that count in (9)
-    /// Whether more edges cannot repair some violation: one not of (3), (9), (11), (17) or the pairing.
+    /// Whether a violation stays if edges are added: one other than (3), (9), (11), (17) or the pairing.
     bool is_final = false;
 };
 

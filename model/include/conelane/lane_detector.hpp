@@ -103,7 +103,7 @@ class LaneDetector {
     [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
 
     /// Cones at most this far apart [m] are one cone for this detector. Cones farther apart than
-    /// kDoubledCone_m are merged only if such merges are at least three, and one for each ten cones kept.
+    /// kDoubledCone_m are merged only if these merges are at least three and a tenth of the cones kept.
     [[nodiscard]] double doubled_cone_m() const;
 
     /// Forgets earlier scenes.

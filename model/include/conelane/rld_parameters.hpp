@@ -29,7 +29,7 @@ struct RldParameters {
     double w_b = 1.0;                   ///< benefit of an edge (29)
     double d_min = 2.5;                 ///< smallest distance of two edges, except end to end (6)-(8) [m]
     double d_h = 6.0;                   ///< (9) counts edges at most this far from the car [m]
-    double theta_heading = 1.2;         ///< (9) counts edges at most this acute angle off the heading [rad]
+    double theta_heading = 1.2;         ///< (9): largest acute angle of a counted edge to the heading [rad]
     double d_near = 6.0;                ///< near endpoints (11) are at most this far from the car [m]
     double d_max = 6.5;                 ///< largest distance between the far endpoints (17) [m]
     double s_crit = 2.5;                ///< largest spacing cost of an edge (27); see d_gap
@@ -54,7 +54,7 @@ struct RldParameters {
     // Edges over gaps, where a cone of a boundary is missing; off by default.
     double d_gap = 0.0;      ///< longest edge allowed though s_crit forbids it [m]; off at 0
     double theta_gap = 0.4;  ///< largest angle from straight on of a turn with such an edge [rad]
-    double d_clear = 0.0;    ///< cones between its ends are this far from its line, or this near an end [m]
+    double d_clear = 0.0;    ///< a cone nearer to its line than this is within this of an end [m]
 
     double d_side = 0.0;  ///< a near endpoint is at most this far from the car's axis [m]; off at 0
 

@@ -17,7 +17,7 @@ enum class SolverTrait : unsigned {
     exact = 1U << 0U,               ///< proves its optimum; others are heuristics and never claim one
     uses_formulation = 1U << 1U,    ///< others ignore the formulation
     suits_paper = 1U << 2U,         ///< fast with Formulation::paper and 12 cones; others take seconds
-    reads_time_of_day = 1U << 3U,   ///< a clock that is set during a solve changes its time limit
+    reads_time_of_day = 1U << 3U,   ///< setting the system clock during a solve changes its time limit
     refuses_huge_costs = 1U << 4U,  ///< status error and a message from costs of 1e25 on, with Clp 1e14
     tuned = 1U << 5U,               ///< its library has other settings than the default ones
 };

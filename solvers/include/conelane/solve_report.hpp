@@ -38,7 +38,7 @@ struct SolveArguments {
     /// A lane graph that solvers may use as their first incumbent, or nullptr. An infeasible start is
     /// dropped. A feasible start stays the answer unless a cheaper lane graph or an optimum is found.
     const LaneGraph* start = nullptr;
-    /// Not 0: draws the order of columns and rows for programs from outside. The library's solvers ignore it.
+    /// Not 0: draws the order of columns and rows for solvers from outside. The library's solvers ignore it.
     std::uint64_t seed = 0;
 };
 
