@@ -72,8 +72,9 @@ def frame_lines(path, interval_s):
                 cones = [{"x": x, "y": y, "color": color} for color, places in zip(colors, line["slam_cones"]) for x, y in places]
                 (x, y), (ahead, left) = line["car_position"], line["car_direction"]
                 line = {"pose": {"x": x, "y": y, "yaw": math.atan2(left, ahead)}, "cones": cones}
-            except (KeyError, TypeError, ValueError) as error:
-                raise InputError(f"{path}:{number}: {error}: is missing or invalid") from None
+            except (KeyError, TypeError, ValueError):
+                wanted = "car_position and car_direction must be [x, y], and slam_cones five lists of [x, y]"
+                raise InputError(f"{path}:{number}: {wanted}") from None
         yield number, {**line, "time_s": time_s}
 
 
@@ -83,6 +84,8 @@ def _flat(points):
 
 def _why(plan, seen, pose, gap_s):
     """Why the lane of a plan is not of its frame or hardly trusted, or the car had none before it."""
+    if gap_s <= 0.0:
+        return "the frame is not later than the one before"
     answer, (x, y, yaw) = plan["answer"], pose
     ahead = sum(1 for cx, cy in seen if math.hypot(cx - x, cy - y) <= _AHEAD_M
                 and (cx - x) * math.cos(yaw) + (cy - y) * math.sin(yaw) > 0.0)
@@ -105,14 +108,19 @@ class Replay:
 
     def __init__(self):
         self._frames, self._cones, self._whys, self._way_m = [], {}, [], 0.0
+        self.reset()
+
+    def reset(self):
+        """Another run begins."""
+        self._latest_s = math.nan  # every comparison with it is false
 
     def add(self, time_s, pose, seen, plan):
         """pose: x, y, yaw. seen: places of cones. plan: a line of `conelane drive --follow`, its `points` as rows s, x, y, heading,
         curvature, width to the left and to the right."""
         last = self._frames[-1] if self._frames else None
-        gap_s = time_s - last["t"] if last else 0.0
-        step_m = math.hypot(pose[0] - last["x"], pose[1] - last["y"]) if last else 0.0
-        self._way_m += step_m
+        gap_s = time_s - self._latest_s
+        self._latest_s = max(time_s, self._latest_s)  # of a number and nan: the number
+        self._way_m += math.hypot(pose[0] - last["x"], pose[1] - last["y"]) if last else 0.0
         rows = plan["points"][::_EVERY]
         sides = [[(x - side * row[column] * math.sin(row[3]), y + side * row[column] * math.cos(row[3]))
                   for row in rows for x, y in [row[1:3]]] for side, column in ((1, 5), (-1, 6))]
@@ -120,8 +128,8 @@ class Replay:
             self._cones[round(place[0] / _CELL_M), round(place[1] / _CELL_M)] = place
         state = plan["state"]
         is_flagged = state in _STATES[2:] or gap_s > _GAP_S or (state == "following" and plan["safe_m"] < _SHORT_M)
-        why = _why(plan, seen, pose, gap_s) if is_flagged else ""
-        self._whys.append(why)
+        why = "; ".join(dict.fromkeys(filter(None, [plan.get("reason"), is_flagged and _why(plan, seen, pose, gap_s)])))  # each once
+        self._whys.append(why if is_flagged else "")
         self._frames.append({
             "t": round(time_s, 3), "x": round(pose[0], 2), "y": round(pose[1], 2), "yaw": round(pose[2], 4), "state": state,
             "seen": _flat(seen), "path": _flat(row[1:3] for row in rows), "left": _flat(sides[0]), "right": _flat(sides[1]),
@@ -173,6 +181,7 @@ def main(arguments):
     plans = read_lines(plans_file)
     for _, frame in frame_lines(frames_file, float(interval_s)):
         if "reset" in frame:
+            replay.reset()
             continue
         _, plan = next(plans)
         pose = frame["pose"]

@@ -21,16 +21,16 @@ std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) 
 }
 
 /// The options that Python gives a detector of that name. Throws InvalidInput if the detector does not use an
-/// option. make_detector reports an unknown name.
-DetectorOptions detector_options(const std::string& name, const py::kwargs& given) {
+/// option, and names `others` beside those that there are. make_detector reports an unknown name.
+DetectorOptions detector_options(const std::string& name, const py::kwargs& given, const char* others = "") {
     const DetectorRecipe* const recipe = find_recipe(name);
     DetectorOptions options;
     for (const auto& [key_object, value] : given) {
         const std::string key = py::str(key_object);
         constexpr std::array<std::string_view, 4> kOptions{"nearest", "parameters", "pairing", "weights"};
         if (std::ranges::find(kOptions, key) == kOptions.end()) {
-            throw InvalidInput(
-                "options", "there is no option '" + key + "', only nearest, parameters, pairing, weights");
+            throw InvalidInput("options", "there is no option '" + key + "', only " + others +
+                                              "nearest, parameters, pairing, weights");
         }
         if (value.is_none()) continue;
         if (key == "nearest") {
@@ -412,9 +412,11 @@ void add_planner(py::module_& module) {
         .init([](const std::string& mission, const std::string& detector, std::optional<int> laps,
                  double max_age_s, double step_m, double smoothing_m, double max_gap_m,
                  double default_width_m, const py::kwargs& given) {
-            return std::make_unique<PlannerObject>(
-                PlannerOptions{mission_named(mission), detector, detector_options(detector, given), laps,
-                               DrivableOptions{step_m, smoothing_m, max_gap_m, default_width_m}, max_age_s});
+            constexpr const char* kOthers =
+                "mission, detector, laps, max_age_s, step_m, smoothing_m, max_gap_m, default_width_m, ";
+            return std::make_unique<PlannerObject>(PlannerOptions{
+                mission_named(mission), detector, detector_options(detector, given, kOthers), laps,
+                DrivableOptions{step_m, smoothing_m, max_gap_m, default_width_m}, max_age_s});
         })
         .method(kUpdate, update)
         .method(kCourse, course)

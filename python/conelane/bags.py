@@ -139,8 +139,8 @@ def _in_order(sightings: List[_Sighting], maker: MessageFrames) -> Any:
     return frames, left_out
 
 
-def add_bag_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("run", help="a ROS 1 bag, or a ROS 2 bag: its folder, .db3 or .mcap file")
+def add_bag_options(parser: argparse.ArgumentParser, other_runs: str = "") -> None:
+    parser.add_argument("run", help="a ROS 1 bag (*.bag); a ROS 2 bag: its folder, .db3 or .mcap file" + other_runs)
     parser.add_argument("--mapping", help="YAML file: topics, frames of reference, types of messages (docs/messages.md)")
     parser.add_argument("--cones", help="topic of the cones")
     parser.add_argument("--pose", help="topic of the poses")

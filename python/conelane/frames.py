@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import sys
 from bisect import bisect_left, insort
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, Iterator, List, NamedTuple, Optional, Tuple, Union
@@ -303,12 +304,42 @@ def write_frames(file: Union[str, "os.PathLike[str]"], frames: Iterable[Frame]) 
     return count
 
 
-def _column(cones: List[Dict[str, Any]], key: str, absent: Any) -> Optional[NDArray[Any]]:
+def _number(of: Any, key: str, place: str) -> float:
+    value = of.get(key) if isinstance(of, dict) else None
+    if type(value) not in (int, float) or not abs(value) <= sys.float_info.max:
+        raise ValueError(f"{place}{key}: {'is missing' if value is None else 'must be a finite number'}")
+    return float(value)
+
+
+def _column(cones: List[Dict[str, Any]], key: str, absent: Any, what: str) -> Optional[NDArray[Any]]:
     """What cones have for a key, and what stands for it in those without; None where no cone has it."""
     values = [cone.get(key) for cone in cones]
     if all(value is None for value in values):
         return None
+    for i, (value, other) in enumerate(zip(values, absent)):
+        parts, like = np.array(value, dtype=object), np.array(other, dtype=object)
+        if value is not None and (parts.shape != like.shape or not {type(part) for part in parts.flat} <= {int, *map(type, like.flat)}):
+            raise ValueError(f"cones[{i}].{key}: must be {what}")
     return np.array([other if value is None else value for value, other in zip(values, absent)])
+
+
+def _frame(line: Dict[str, Any]) -> Frame:
+    """Raises ValueError, naming the key."""
+    x, y, yaw = (_number(line.get("pose"), key, "pose.") for key in ("x", "y", "yaw"))
+    cones = line.get("cones")
+    if not isinstance(cones, list):
+        raise ValueError("cones: must be an array")
+    places = [[_number(cone, key, f"cones[{i}].") for key in ("x", "y")] for i, cone in enumerate(cones)]
+    names = [str(cone.get("color") or "unknown") for cone in cones]
+    for i, name in enumerate(names):
+        if name not in Color.__members__:
+            raise ValueError(f"cones[{i}].color: '{name}' is not a colour; colours are {', '.join(Color.__members__)}")
+    labels = np.array([Color[name] for name in names], dtype=np.uint8)
+    ids, confidences, covariances = (_column(cones, key, [absent] * len(cones), what) for key, absent, what in (
+        ("id", NO_ID, "an integer"), ("confidence", 1.0, "a number"), ("position_covariance", np.zeros((2, 2)), "[[xx, xy], [xy, yy]]")))
+    colors = _column(cones, "color_probabilities", np.eye(len(Color))[labels], "5 numbers")
+    return Frame(np.array(places).reshape(-1, 2), (x, y, yaw), line["time_s"], ids, labels if colors is None else colors, confidences,
+                 covariances)
 
 
 def read_frames(file: Union[str, "os.PathLike[str]"], interval_s: float = 0.1) -> Iterator[Optional[Frame]]:
@@ -318,16 +349,7 @@ def read_frames(file: Union[str, "os.PathLike[str]"], interval_s: float = 0.1) -
     Raises ValueError, naming file, line and key.
     """
     for number, line in frame_lines(os.fspath(file), interval_s):
-        if "reset" in line:
-            yield None
-            continue
         try:
-            cones, pose = line["cones"], line["pose"]
-            labels = np.array([Color[cone.get("color") or "unknown"] for cone in cones], dtype=np.uint8)
-            columns = [_column(cones, key, [absent] * len(cones)) for key, absent in (
-                ("id", NO_ID), ("confidence", 1.0), ("position_covariance", np.zeros((2, 2))))]
-            colors = _column(cones, "color_probabilities", np.eye(len(Color))[labels])
-            yield Frame(np.array([(cone["x"], cone["y"]) for cone in cones], dtype=np.float64).reshape(-1, 2),
-                        (pose["x"], pose["y"], pose["yaw"]), line["time_s"], columns[0], labels if colors is None else colors, *columns[1:])
-        except (AttributeError, KeyError, TypeError, ValueError) as error:
-            raise ValueError(f"{file}:{number}: {error}: is missing or invalid") from None
+            yield None if "reset" in line else _frame(line)
+        except ValueError as error:
+            raise ValueError(f"{file}:{number}: {error}") from None

@@ -26,7 +26,7 @@ __all__ = ["replay"]
 def _line(plan: Plan) -> Dict[str, Any]:
     """What `conelane drive --follow` writes of a plan, as far as the page shows it."""
     answer = {key: getattr(plan.answer, key) for key in ("status", "message", "confidence", "stopped_by")}
-    return {**{key: getattr(plan, key) for key in ("state", "lap", "phase", "stop", "age_s", "safe_m")}, "answer": answer,
+    return {**{key: getattr(plan, key) for key in ("state", "lap", "phase", "stop", "age_s", "safe_m", "reason")}, "answer": answer,
             "points": plan.centre_line.tolist()}
 
 
@@ -36,7 +36,7 @@ def replay(frames: Iterable[Optional[Frame]], planner: Planner, name: str = "run
     frames: As `read_frames` gives them; None where another run begins.
     planner: Drives the run, with `time_limit_ms` for each frame [ms].
     name: Title of the page.
-    Raises ValueError as `Planner.update`, and if `frames` is empty.
+    Raises ValueError as `Planner.update`, with name and number of the frame, and if `frames` is empty.
 
     >>> cones = [[x, y] for x in (2, 6, 10, 14) for y in (-1.5, 1.5)]
     >>> page = replay([Frame(cones, (0, 0, 0), 0.0)], Planner())
@@ -44,12 +44,16 @@ def replay(frames: Iterable[Optional[Frame]], planner: Planner, name: str = "run
     True
     """
     page, count = Replay(), 0
-    for frame in frames:
+    for number, frame in enumerate(frames, 1):
         if frame is None:
             planner.reset()
+            page.reset()
             continue
         count += 1
-        plan = planner.update(**frame._asdict(), time_limit_ms=time_limit_ms)
+        try:
+            plan = planner.update(**frame._asdict(), time_limit_ms=time_limit_ms)
+        except ValueError as error:
+            raise ValueError(f"{name}: frame {number}: {error}") from None
         page.add(frame.time_s, frame.pose, np.asarray(frame.cones).tolist(), _line(plan))
     if not count:
         raise ValueError(f"{name}: holds no frame")
@@ -57,8 +61,11 @@ def replay(frames: Iterable[Optional[Frame]], planner: Planner, name: str = "run
 
 
 def _frames_of(options: argparse.Namespace) -> Iterable[Optional[Frame]]:
-    if Path(options.run).suffix in (".json", ".jsonl"):
-        return read_frames(options.run)
+    file = Path(options.run)
+    if file.suffix in (".json", ".jsonl"):
+        return read_frames(file)
+    if file.suffix not in (".bag", ".db3", ".mcap") and not file.is_dir():
+        raise ValueError(f"{file}: must end in .bag, .db3 or .mcap (a bag), in .jsonl or .json (frames), or be the folder of a ROS 2 bag")
     return run_of(options).frames
 
 
@@ -74,7 +81,7 @@ def _write(options: argparse.Namespace) -> None:
 
 def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser = argparse.ArgumentParser("python -m conelane.replay", description="Makes one page that plays a run.")
-    add_bag_options(parser)
+    add_bag_options(parser, "; or frames: *.frames.jsonl, or a run of ft-fsd, *.json")
     parser.add_argument("--out", "-o", required=True, help="PAGE.html")
     parser.add_argument("--mission", default="trackdrive", help="trackdrive, autocross, acceleration, skidpad")
     parser.add_argument("--method", default="front-warm", help="the detector")

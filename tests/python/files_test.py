@@ -1,4 +1,8 @@
 """Scenes, lanes, tracks and scores: what is written is read again, and what is wrong in a file is said."""
+import contextlib
+import io
+import json
+import re
 import tempfile
 import unittest
 import warnings
@@ -26,9 +30,8 @@ class InFolder(unittest.TestCase):
 
 class Scenes(InFolder):
     def test_a_scene_is_read_as_it_was_written(self):
-        scene = conelane.Scene(CONES, (0.5, -0.25, 0.1), ids=np.arange(7) + 3,
-                               colors=["blue", "yellow"] * 3 + ["orange"], confidences=np.linspace(0, 1, 7),
-                               id="a", ground_truth=TRUTH, track="t")
+        scene = conelane.Scene(CONES, (0.5, -0.25, 0.1), ids=np.arange(7) + 3, colors=["blue", "yellow"] * 3 + ["orange"],
+                               confidences=np.linspace(0, 1, 7), id="a", ground_truth=TRUTH, track="t")
         conelane.write_scenes(self.folder / "s.scenes.jsonl", [scene])
         again, = conelane.read_scenes(self.folder / "s.scenes.jsonl")
         for one in (scene, again):
@@ -50,22 +53,21 @@ class Scenes(InFolder):
         self.assertEqual((again[0].condition, again[0].false_positive_rate, again[0].range_m), ("car", 0.3, 30.0))
 
     def test_a_fault_is_named_with_file_line_and_key(self):
-        file = self.write("bad.scenes.jsonl", '{"pose": {"x": 0, "y": 0, "yaw": 0}, '
-                          '"cones": [{"id": 1, "x": "far", "y": 1}]}\n')
+        file = self.write("bad.scenes.jsonl", '{"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": "far", "y": 1}]}\n')
         with self.assertRaisesRegex(ValueError, r"bad\.scenes\.jsonl:1: cones\[0\]\.x: "):
             conelane.read_scenes(file)
         with self.assertRaisesRegex(ValueError, "nowhere"):
             conelane.read_scenes(self.folder / "nowhere")
-
-    def test_a_fault_is_said_where_the_file_is_no_text(self):
-        file = self.folder / "bad.csv"
+        file = self.folder / "bad.csv"  # no text
         file.write_bytes(b"tag,x,y,direction\nblue,\xff,0,0\n")
         with self.assertRaisesRegex(ValueError, r"bad\.csv:2: x: '\\xff' is not a number"):
             conelane.load_tracks(f"eufs:{file}")
 
-    def test_an_index_beyond_the_cones(self):
+    def test_a_scene_is_checked_at_once(self):
         with self.assertRaisesRegex(ValueError, r"ground_truth.left\[1\]: 7 is not an index of the 7 cones"):
             conelane.Scene(CONES, (0, 0, 0), ground_truth=([0, 7], [1]))
+        with self.assertRaisesRegex(ValueError, r"cones\[0\]\.x: must be a finite number"):
+            conelane.Scene([[np.nan, 0]], (0, 0, 0))
 
     def test_what_could_not_be_read_is_not_written(self):
         for message, make in (("cone id 0 is there twice", lambda: [conelane.Scene(CONES, (0, 0, 0), ground_truth=([0], [0, 1]))]),
@@ -74,10 +76,6 @@ class Scenes(InFolder):
                               ("two scenes have the id 'a'", lambda: [conelane.Scene(CONES, (0, 0, 0), id="a")] * 2)):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 conelane.write_scenes(self.folder / "s.scenes.jsonl", make())
-
-    def test_a_scene_is_checked_at_once(self):
-        with self.assertRaisesRegex(ValueError, r"cones\[0\]\.x: must be a finite number"):
-            conelane.Scene([[np.nan, 0]], (0, 0, 0))
 
 
 class Lanes(InFolder):
@@ -97,25 +95,17 @@ class Lanes(InFolder):
             np.testing.assert_array_equal(again.centre_line(), lane.centre_line())
 
     def test_positions_stand_for_the_cones_they_are_at(self):
-        file = self.write("p.lanes.jsonl", '{"scene": "a", "method": "m", "status": "found", "latency_ms": 1, '
-                          '"left_points": [[0.1, 1.5], [4, 1.5]], "right_points": [[0, -1.5], [4, -1.4]]}\n')
-        lane, = conelane.read_lanes(file, [self.scene])
-        self.assertEqual((lane.left.tolist(), lane.right.tolist()), ([0, 2], [1, 3]))
-
-    def test_positions_beside_cones_stay_positions(self):
-        file = self.write("p.lanes.jsonl", '{"scene": "a", "method": "m", "status": "found", "latency_ms": 1, '
-                          '"left_points": [[0, 2.5], [4, 2.5]], "right_points": [[0, -1.5], [4, -1.5]]}\n')
-        lane, = conelane.read_lanes(file, [self.scene])
-        self.assertEqual(len(lane.left), 0)
-        self.assertEqual(lane.left_points.tolist(), [[0, 2.5], [4, 2.5]])
+        line = '{"scene": "a", "method": "m", "status": "found", "latency_ms": 1, "left_points": [[0.1, %s], [4, %s]], "right_points": [[0, -1.5], [4, -1.5]]}'
+        for y, indices in ((1.5, ([0, 2], [1, 3])), (2.5, ([], []))):  # cones, and none on the left
+            lane, = conelane.read_lanes(self.write("p.lanes.jsonl", line % (y, y)), [self.scene])
+            self.assertEqual((lane.left.tolist(), lane.right.tolist()), indices)
+        self.assertEqual(lane.left_points.tolist(), [[0.1, 2.5], [4, 2.5]])
         np.testing.assert_allclose(lane.centre_line()[:, 2], 0.5, atol=1e-9)
 
     def test_faults(self):
-        line = ('{"scene": "%s", "method": "m", "status": "found", '
-                '"left": [%d, 12], "right": [11, 13], "latency_ms": 1}\n')
+        line = '{"scene": "%s", "method": "m", "status": "found", "left": [%d, 12], "right": [11, 13], "latency_ms": 1}\n'
         for text, message in ((line % ("b", 10), r"l\.lanes\.jsonl:1: scene: 'b' is not one of the scenes given"),
-                              (line % ("a", 99), r"l\.lanes\.jsonl:1: .*99"),
-                              ("{}\n", r"l\.lanes\.jsonl:1: ")):
+                              (line % ("a", 99), r"l\.lanes\.jsonl:1: .*99"), ("{}\n", r"l\.lanes\.jsonl:1: ")):
             with self.subTest(text), self.assertRaisesRegex(ValueError, message):
                 conelane.read_lanes(self.write("l.lanes.jsonl", text), [self.scene])
 
@@ -133,11 +123,26 @@ class Frames(InFolder):
             conelane.Planner().update(**one._asdict())
 
     def test_faults(self):
-        for text in ('{"reset": "no"}', "{", "[1]", '[{"car_position": [0, 0]}]', '{"time_s": "now"}', '{"cones": [1]}'):
-            with self.subTest(text), self.assertRaisesRegex(ValueError, r"r\.frames\.jsonl(:1)?: "):
+        line = '{"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"x": 1, "y": 2, %s}]}'
+        for text, message in (('{"reset": "no"}', "reset"), ("{", ""), ("[1]", ""), ('[{"car_position": [0, 0]}]', "slam_cones"),
+                              ('{"time_s": "now"}', "time_s"), ('{"cones": [1]}', r"pose\.x: is missing"), (line % '"id": "7"', r"cones\[0\]\.id: "),
+                              (line % '"color": "Blue"', r"cones\[0\]\.color: 'Blue' is not a colour; colours are unknown, blue, yellow, "),
+                              (line % '"x": "4.2"', r"cones\[0\]\.x: must be"), (line % '"x": NaN', r"cones\[0\]\.x: must be")):
+            with self.subTest(text), self.assertRaisesRegex(ValueError, r"r\.frames\.jsonl(:1)?: .*" + message):
                 list(frames.read_frames(self.write("r.frames.jsonl", text)))
-        with self.assertRaisesRegex(ValueError, "holds no frame"):
-            replay.replay([None], conelane.Planner())
+        for given, message in ([None], "run: holds no frame"), ([frames.Frame(CONES[:2], (0, 0, 0), 0.0, [5, 5])], r"run: frame 1: cones\[1\]\.id"):
+            with self.assertRaisesRegex(ValueError, message):
+                replay.replay(given, conelane.Planner())
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            self.assertEqual(replay.main([str(self.folder / "run.txt"), "--out", "p.html"]), 2)
+        self.assertIn("run.txt: must end in .bag, .db3 or .mcap (a bag), in .jsonl or .json (frames)", said.getvalue())
+
+    def test_a_page_says_why_there_was_no_lane(self):
+        run = [frames.Frame(CONES, (0, y, 0), time_s) for time_s, y in ((5.0, 0), (5.1, 0), (2.0, 0), (2.1, 0), (5.2, 40))]
+        page = replay.replay([*run, None, *run[2:4]], conelane.Planner(), time_limit_ms=None)
+        says = [one["says"] for one in json.loads(page.split('id="race-data">')[1].split("</script>")[0])["frames"]]
+        late, off = "the frame is not later than the one before", "the car is off the last lane; fewer than 3 cones within 20 m ahead"
+        self.assertEqual([re.sub(r".*[m%](, |$)", "", of) for of in says], ["", "", late, late, off, "", ""])
 
 
 class Tracks(InFolder):
@@ -154,15 +159,13 @@ class Tracks(InFolder):
 
     def test_tracks_of_a_file(self):
         file = self.write("oval.csv", "tag,x,y,direction,x_variance,y_variance,xy_covariance\n" + "".join(
-            f"{tag},{r * np.cos(a)},{r * np.sin(a)},0,0,0,0\n" for tag, r in (("blue", 10), ("yellow", 13))
-            for a in np.arange(0, 6.2, 0.3)))
+            f"{tag},{r * np.cos(a)},{r * np.sin(a)},0,0,0,0\n" for tag, r in (("blue", 10), ("yellow", 13)) for a in np.arange(0, 6.2, 0.3)))
         track, = conelane.load_tracks(f"eufs:{file}")
         self.assertEqual((len(track.left), len(track.right), track.closed), (21, 21, True))
         self.assertEqual(set(track.colors[track.left].tolist()), {conelane.Color.blue})
 
     def test_what_was_guessed_and_left_out_is_a_warning(self):
-        rows = [f"{tag},{r * np.cos(a)},{r * np.sin(a)},0\n" for tag, r in (("blue", 10), ("yellow", 13))
-                for a in np.arange(0, 6.2, 0.3)]
+        rows = [f"{tag},{r * np.cos(a)},{r * np.sin(a)},0\n" for tag, r in (("blue", 10), ("yellow", 13)) for a in np.arange(0, 6.2, 0.3)]
         file = self.write("oval.csv", "".join(rows) + "yellow,180,0,0\n")
         with warnings.catch_warnings(record=True) as given:
             warnings.simplefilter("always")
@@ -178,10 +181,9 @@ class Tracks(InFolder):
             with self.subTest(spec), self.assertRaises(ValueError):
                 conelane.load_tracks(spec)
         track, = conelane.load_tracks("generated:circle")
-        with self.assertRaisesRegex(ValueError, "rain"):
-            conelane.generate_scenes(track, condition="rain")
-        with self.assertRaises(ValueError):
-            conelane.generate_scenes(track, false_positive_rate=1.5)
+        for message, options in (("rain", {"condition": "rain"}), ("", {"false_positive_rate": 1.5})):
+            with self.assertRaisesRegex(ValueError, message):
+                conelane.generate_scenes(track, **options)
 
 
 class Scores(unittest.TestCase):
@@ -190,8 +192,7 @@ class Scores(unittest.TestCase):
         course = conelane.Boundaries([[x, 1.5] for x in range(0, 40, 4)], [[x, -1.5] for x in range(0, 40, 4)], False)
         lane = conelane.Detector("front").detect(CONES, (0, 0, 0), time_limit_ms=None)
         good = conelane.score(scene, lane, course)
-        self.assertEqual((good.category, good.usable, good.success, good.iou, good.accurate),
-                         ("ground_truth", True, True, 1.0, True))
+        self.assertEqual((good.category, good.usable, good.success, good.iou, good.accurate), ("ground_truth", True, True, 1.0, True))
         self.assertEqual((good.lane_length_m, good.ground_truth_length_m, good.divergence_distance_m), (8.0, 8.0, None))
         np.testing.assert_allclose(good.lateral_error_m, 0.0, atol=1e-6)
         # The same cones without the last left one: now the false one is left of the lane.
@@ -228,8 +229,7 @@ class Rld(unittest.TestCase):
 
     def test_infeasible_and_stopped(self):
         none = conelane.solve_rld(CONES[:3], (0, 0, 0))
-        self.assertEqual((none.status, none.edges.shape, none.objective, len(none.left)),
-                         ("infeasible", (0, 2), None, 0))
+        self.assertEqual((none.status, none.edges.shape, none.objective, len(none.left)), ("infeasible", (0, 2), None, 0))
         self.assertIsNone(none.stopped_by)
         stopped = conelane.solve_rld(CONES, (0, 0, 0), time_limit_ms=0)
         self.assertEqual((stopped.status, stopped.stopped_by), ("stopped", "time"))

@@ -140,7 +140,7 @@ class Straight(unittest.TestCase):
                                  ("laps", {"mission": "acceleration", "laps": 1}),
                                  ("max_age_s", {"max_age_s": -1.0}),
                                  ("weights", {"detector": "clc", "weights": b"{}"}),
-                                 ("there is no option 'speed'", {"speed": 3})):
+                                 ("there is no option 'max_age', only mission, detector, laps, max_age_s, ", {"max_age": 2})):
             with self.subTest(message), self.assertRaisesRegex(ValueError, message):
                 conelane.Planner(**options)
         self.assertEqual(repr(conelane.Planner("skidpad")), "<conelane.Planner 'skidpad' by 'front-warm'>")
