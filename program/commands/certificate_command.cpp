@@ -4,6 +4,8 @@
 #include "program/commands/command_parts.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
+#include <unordered_set>
+
 namespace conelane::program {
 namespace {
 
@@ -102,8 +104,11 @@ void for_each_record(const CertificateOptions& options, const RldParameters& par
     const ScenesById scenes(options.scenes);
     if (records.empty()) throw InputError(options.verify, 0, "", "holds no certificate");
     const ClaimBasis checked{tag_of(options.parameters.name, parameters), options.nearest};
+    std::unordered_set<std::string> seen;
     for (const Record& record : records) {
         require_same_basis({record.parameters, record.nearest}, checked, options.verify, record.line);
+        if (!seen.insert(record.scene).second)
+            throw InputError(options.verify, record.line, "scene", "'" + record.scene + "' is there twice");
     }
     Progress progress("verify", records.size());
     for (const Record& record : records) {
@@ -111,6 +116,9 @@ void for_each_record(const CertificateOptions& options, const RldParameters& par
         verify(record, cones_asked_for(scene, options.nearest ? options.nearest : record.nearest));
         progress.advance();
     }
+    if (const std::size_t without = scenes.all().size() - records.size(); without > 0)
+        fmt::print(stderr, "conelane: {}: {} of {} scenes have no certificate\n", options.verify, without,
+                   scenes.all().size());
 }
 
 std::string no_cone(ConeId id) {
