@@ -33,7 +33,7 @@ def described(results, name):
     for source, lines in _OF_SOURCE.items():
         if name in lines:
             return lines[name], source
-    row = next((row for row in results.rows if row["method"] == name), {})
+    row = next((row for row in (results.rows if results else []) if row["method"] == name), {})
     title = row.get("card", {}).get("name", "")
     if "outside" in row:
         return f"{title}, a method from outside." if title else "A method from outside.", "its authors"

@@ -255,7 +255,7 @@ class ReportPage(unittest.TestCase):
         names = [line.split()[0] for line in listed.splitlines()]
         self.assertGreater(len(names), 10)
         for name in names:
-            self.assertTrue(described(None, name)[0], name)
+            self.assertTrue(described(None, name)[0], f"{name}: no line in experiments/report/methods.py")
 
     def test_methods_of_different_objectives_are_never_said_to_agree(self):
         exactness = re.search(r'<section id="exactness">(.*?)</section>', self.text, flags=re.S)[1]
