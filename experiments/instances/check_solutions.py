@@ -2,12 +2,13 @@
 
     check_solutions.py [--classes] LIBRARY OUT...
 
-OUT is a folder of a solver, which has its name. Each point is tried in its program: rows, bounds and whole numbers within 1e-6, and its objective is computed again. A claimed optimum or
-infeasibility is proven if the library's own proof says the same within 1e-6 of its size (`=opt=`, `=inf=`, or a `=bestdual=` that the
-point meets) or another of the solvers claims the same, wrong if a point or a proof of the library or of another solver contradicts it, and
-otherwise unverified. The table has for each solver and class how many programs are proven, unverified, only feasible, without a point, failed and
-wrong, and the shifted geometric mean (10 ms) of the times, with what is not proven at the limit. Better points of open programs are listed below
-it. Exit code 1 if an answer is wrong. With --classes, the fastest proof by one of the solvers enters the index, if it is faster than the one there.
+OUT is a folder of a solver, which has its name. Each point is tried in its program: rows, bounds and whole numbers within 1e-6, and its objective
+is computed again. A claimed optimum or infeasibility is proven if the library's own proof says the same within 1e-6 of its size (`=opt=`, `=inf=`,
+or a `=bestdual=` that the point meets), agreed if only another of the solvers claims the same, wrong if a point or a proof of the library or of
+another solver contradicts it, and otherwise unverified. A bound above a point of the library is wrong, too. The table has for each solver and class
+how many programs are proven, agreed, unverified, only feasible, without a point, failed and wrong, and the shifted geometric mean (10 ms) of the
+times, with what is not proven at the limit. Better points of open programs are listed below it. Exit code 1 if an answer is wrong. With --classes,
+the fastest proof by one of the solvers enters the index, if it is faster than the one there.
 """
 
 import csv
@@ -32,27 +33,29 @@ def known_values(library):
     return known
 
 
-VERDICTS = ("proven", "unverified", "feasible", "none", "failed", "wrong")
+VERDICTS = ("proven", "agreed", "unverified", "feasible", "none", "failed", "wrong")
 
 
 def judged(program, solution, known):
     """(one of VERDICTS, what to say)"""
     best = known.get("=opt=", known.get("=best="))
     bound = known.get("=opt=", known.get("=bestdual="))
+
+    def is_below(a, b):
+        return a < b and not mps.is_same(a, b)
+
     if solution.status == "infeasible":
         if "=inf=" in known:
             return "proven", ""
         return ("wrong", f"claimed to be infeasible, has a point of {best:.9g}") if best is not None else ("unverified", "claimed to be infeasible")
+    if solution.bound is not None and best is not None and is_below(best, solution.bound):
+        return "wrong", f"claims a bound of {solution.bound:.9g}, there is a point of {best:.9g}"
     # A claimed optimum without values is the point where all columns are 0.
     if solution.status != "optimal" and not (solution.status == "feasible" and solution.values):
         return "none", ""
     if broken := mps.violation(program, solution.values):
         return "wrong", broken
     value = mps.objective_of(program, solution.values)
-
-    def is_below(a, b):
-        return a < b and not mps.is_same(a, b)
-
     if solution.objective is not None and not mps.is_same(value, solution.objective):
         return "wrong", f"claims an objective of {solution.objective:.9g}, its point has {value:.9g}"
     if solution.bound is not None and is_below(value, solution.bound):
@@ -111,7 +114,7 @@ def compare(answers):
         if answer not in agreed:
             answer[:2] = "wrong", f"claims {answer[4]:.9g} to be the optimum, another solver has a point of {best:.9g}"
         elif len(agreed) > 1:
-            answer[0] = "proven"
+            answer[0] = "agreed"  # perhaps two runs of one engine: no proof
 
 
 def write_classes(library, of_solver):
@@ -137,6 +140,10 @@ def main(arguments):
     if not outs:
         print(__doc__, file=sys.stderr)
         return 2
+    for folder, file, maker in [(library, "index.csv", "`conelane instances`"), *((out, "runs.csv", "run_solver.py") for out in outs)]:
+        if not os.path.exists(os.path.join(folder, file)):
+            print(f"check_solutions.py: {folder} holds no {file}: {maker} makes it", file=sys.stderr)
+            return 2
     known = known_values(library)
     of_solver = {os.path.basename(os.path.normpath(out)): answers_of(library, out, known) for out in outs}
     cells, notes = defaultdict(list), []

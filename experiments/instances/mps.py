@@ -82,7 +82,7 @@ def _status_of(text):
 
 def is_same(a, b, tolerance=1e-6):
     """Whether two objectives are the same, within the tolerance of the larger one or of 1."""
-    return abs(a - b) <= tolerance * max(1.0, abs(a), abs(b))
+    return math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance)
 
 
 def _set(solution, column, value):

@@ -4,8 +4,8 @@
 
 COMMAND is run by /bin/sh for each program, with the placeholders {mps} {sol} {limit_s} {limit_ms} {limit_whole_s} {gap} {threads} {seed}
 filled in, as `exec:` of `conelane study backends` fills them: experiments/adapters/ has commands. The programs are unpacked. A command that runs
-longer than its limit and 10 s is killed. OUT gets NAME.sol, NAME.log and runs.csv (name, exit code, seconds); programs that runs.csv names are
-not run again. Then: check_solutions.py LIBRARY OUT.
+longer than its limit and 10 s is killed. OUT gets NAME.sol, NAME.log, command.txt and runs.csv (name, exit code, seconds); programs that runs.csv
+names are not run again, and another COMMAND needs another OUT. Then: check_solutions.py LIBRARY OUT.
 """
 
 import argparse
@@ -13,6 +13,7 @@ import csv
 import gzip
 import math
 import os
+import pathlib
 import shutil
 import signal
 import subprocess
@@ -21,6 +22,7 @@ import tempfile
 import time
 
 GRACE_S = 10.0
+CLASSES = "easy,hard,open"
 
 
 def index_of(library):
@@ -50,20 +52,31 @@ def main():
     parser.add_argument("library")
     parser.add_argument("out")
     parser.add_argument("--limit-s", type=float, default=60.0, help="time limit of a program")
-    parser.add_argument("--classes", default="easy,hard,open", help="classes of the index, separated by commas")
+    parser.add_argument("--classes", default=CLASSES, help="classes of the index, separated by commas")
     parser.add_argument("--formulation", choices=["tight", "printed"], help="one formulation only")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("command", nargs="+")
     options = parser.parse_args()
+    if not os.path.exists(os.path.join(options.library, "index.csv")):
+        parser.error(f"{options.library} holds no index.csv: `conelane instances` makes it")
+    classes = options.classes.split(",")
+    if unknown := [name for name in classes if name not in CLASSES.split(",")]:
+        parser.error(f"--classes: there is no class '{unknown[0]}'; classes are {CLASSES}")
     os.makedirs(options.out, exist_ok=True)
-    table = os.path.join(options.out, "runs.csv")
+    table, command_file = os.path.join(options.out, "runs.csv"), pathlib.Path(options.out, "command.txt")
     done = set()
     if os.path.exists(table):
         with open(table, newline="", encoding="utf-8") as stream:
             done = {row["name"] for row in csv.DictReader(stream)}
-    rows = [row for row in index_of(options.library) if row["class"] in options.classes.split(",") and
+    rows = [row for row in index_of(options.library) if row["class"] in classes and
             options.formulation in (None, row["formulation"])]
     command = " ".join(options.command)
+    stored = command_file.read_bytes() if command_file.exists() else b"an unknown command"
+    if done and stored != os.fsencode(command):
+        parser.error(f"{options.out} has runs of {os.fsdecode(stored)}: name another folder")
+    command_file.write_bytes(os.fsencode(command))
+    there = sum(name_of(row) in done for row in rows)
+    print(f"{there} of {len(rows)} already there, {len(rows) - there} to run", file=sys.stderr)
     with open(table, "a", newline="", encoding="utf-8") as stream, tempfile.TemporaryDirectory() as folder:
         writer = csv.writer(stream)
         if not done and stream.tell() == 0:
@@ -73,6 +86,7 @@ def main():
             if name in done:
                 continue
             mps, solution = os.path.join(folder, "program.mps"), os.path.join(options.out, name + ".sol")
+            pathlib.Path(solution).unlink(missing_ok=True)  # of an earlier run
             with gzip.open(os.path.join(options.library, row["file"])) as packed, open(mps, "wb") as unpacked:
                 shutil.copyfileobj(packed, unpacked)
             filled = command

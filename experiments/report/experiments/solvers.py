@@ -1,5 +1,7 @@
 """What `conelane study backends` measured of solvers."""
 
+from collections import Counter
+
 import numpy as np
 
 from .. import measures
@@ -47,6 +49,14 @@ def _size(row, *more):
     return Cell(" ".join((_size_name(row["nearest"]), *more)).strip(), row["nearest"] or 10**6)
 
 
+def _refuted(summaries):
+    """How many claims of each backend another one refutes, in all orders."""
+    counts = Counter()
+    for row in summaries:
+        counts[row["backend"]] += row.get("refuted", 0) if "condition" not in row else 0
+    return counts
+
+
 def times_figure(results):
     """Median and p95 of the time to a proven optimum by number of cones, for each engine, with rows on demand or all, whichever proves more and is
     faster at that size; and the time of CLC on the same cone sets. A curve ends where fewer scenes are proven."""
@@ -62,10 +72,12 @@ def times_figure(results):
         common = np.isin(sample.scene, scenes.get(sample.nearest or 0, []))
         if sample.method == "clc" and np.any(common):
             of_engine.setdefault("clc, a graph search without proof", {})[sample.nearest or 0] = sample.latency[common]
-    curves = []
+    curves, refuted = [], _refuted(_of_kind(results, "summary"))
     for index, (engine, times) in enumerate(of_engine.items()):
         marker = {"marker": MARKERS[index % len(MARKERS)]} | ({"markerfacecolor": SURFACE} if index >= len(MARKERS) else {})  # then hollow
-        for share, label, style in ((0.5, engine, {}), (0.95, "", THIN)):
+        refuted_claims = refuted[engine] + refuted[engine + _ALL_ROWS]
+        name = f"{engine}, claims refuted: {refuted_claims}" if refuted_claims else engine
+        for share, label, style in ((0.5, name, {}), (0.95, "", THIN)):
             points = [(place, quantile(times[nearest], share)) for place, nearest in enumerate(sizes) if nearest in times]
             if any(np.isfinite(time) for _, time in points):  # a gap where it is not known
                 curves.append(Curve(label, np.where(np.isfinite(points), points, np.nan), series_style(index) | marker | style))
@@ -81,12 +93,6 @@ def first_figure(results):
                      "times. Thin curves: p95.", times_figure(results), "Time to a proven optimum by number of cones")
     except Missing:
         return ""
-
-
-def _proven(one):
-    """The proven optima by scene; infinite where it is proven that there is no lane graph."""
-    return {scene: objective if status == "optimal" else np.inf
-            for scene, status, objective in zip(one.scene[one.is_decided], one.status[one.is_decided], one.objective[one.is_decided])}
 
 
 @Experiment
@@ -177,18 +183,16 @@ def solver_measures(results, published):
     Claim: All exact solvers have the same optimum. Which is fastest, how steady is it, and what is gained by choosing a solver for each scene?
     Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program, one thread, pinned; the time is from the
     scene in memory to the lane graph in memory, the program's building included. Solved: proven within the limit, accepted by the checker, and
-    refuted by no other backend. Errors: of all orders. Geometric mean shifted by 1 ms, failures at the limit. PAR 10: mean time, failures at 10
-    times the limit. Small: 95 % intervals, courses resampled. Adds: PAR 10 of the virtual best without this solver, less that with it. Variation:
-    standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the gap to the best lane graph known, over
-    time. Memory: growth of the process; for a program from outside, all its memory. Pairs: each solver and the reference, Wilcoxon's
-    signed-rank test on the means of courses, corrected by Holm. Definitions and sources: docs/measures.md.
+    refuted by no other backend. Errors: of all orders, with refuted claims. Geometric mean shifted by 1 ms, failures at the limit. PAR 10: mean
+    time, failures at 10 times the limit. Small: 95 % intervals, courses resampled. Adds: PAR 10 of the virtual best without this solver, less that
+    with it. Variation: standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the gap to the best lane
+    graph known, over time. Memory: growth of the process; for a program from outside, all its memory. Pairs: each solver and the reference,
+    Wilcoxon's signed-rank test on the means of courses, corrected by Holm. Definitions and sources: docs/measures.md.
     Source: this project; the RLD paper runs Mosek on the printed formulation.
     Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
     Command: conelane study backends --sizes 12,20,30,60,all --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out
     RESULTS/backends.jsonl"""
-    solves, origin = _read(results)
-    agreement = ["n = {}: {} of {} scenes".format(_size_name(size), *measures.disagreements(
-        _proven(one) for one in solves if one.nearest == size and not one.method.endswith(_WARM))) for size in dict.fromkeys(one.nearest for one in solves)]
+    origin = _read(results)[1]
     summaries, blocks, pairs, selections, gaps = (_of_kind(results, kind) for kind in _KINDS)
     if not summaries:
         raise Missing(f"there is no {FILE} with measures.")
@@ -198,7 +202,7 @@ def solver_measures(results, published):
         "solver-measures", [
             _GROUP, column("backend", text, "backend"), column("scenes", count, "scenes"), column("runs", count, "runs"),
             column("solved %", percent, lambda row: row["solved"] / row["runs"]), column("errors", count, "errors"),
-            column("median ms", milliseconds, "median_ms"),
+            column("refuted", count, "refuted"), column("median ms", milliseconds, "median_ms"),
             column("geometric mean ms", milliseconds, "geometric_ms", interval=lambda row: row.get("geometric_ms_interval")),
             column("PAR 10 ms", milliseconds, "par10_ms", interval=lambda row: row.get("par10_ms_interval")),
             column("own time, median ms", milliseconds, "median_engine_ms"), column("variation %", percent, "variability"),
@@ -206,7 +210,7 @@ def solver_measures(results, published):
             column("dual integral ms", milliseconds, "dual_integral_ms"), column("first", count, "won"),
             column("adds to the virtual best, ms", milliseconds, "contribution_ms"),
             column("peak MiB", fixed, lambda row: peak.get((row["nearest"], row["backend"])))], summaries,
-        note=f"Backends prove different optima at {'; '.join(agreement)}. {_spread_of_reference(blocks)}{'; '.join(versions)}.{origin}")
+        note=f"Claims refuted by another backend: {_refuted(summaries).total()}. {_spread_of_reference(blocks)}{'; '.join(versions)}.{origin}")
     if pairs:
         parts += table("solver-pairs", [
             _GROUP, column("first", text, "first"), column("second", text, "second"), column("time ratio", short, "ratio", interval=lambda row: row.get("ratio_interval")),

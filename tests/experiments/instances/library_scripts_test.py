@@ -58,6 +58,31 @@ class Scripts(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stderr)
         return script("check_solutions.py", self.library, out)
 
+    def read(self, reader, text, *arguments):
+        """What `reader` makes of a file with this text."""
+        path = os.path.join(self.folder, "file")
+        with open(path, "w", encoding="ascii") as stream:
+            stream.write(text)
+        return reader(path, *arguments)
+
+    def test_a_run_takes_no_answer_of_another_one(self):
+        out, nothing = (os.path.join(self.folder, name) for name in ("again", "nothing"))
+        lie, tight = "echo =infeas= > {sol}", ("--formulation", "tight")
+        for name, *arguments, code, said in (
+                ("run_solver.py", self.library, out, *tight, "--", lie, 0, "0 of 2 already there, 2 to run"),
+                ("run_solver.py", self.library, out, *tight, "--", lie, 0, "2 of 2 already there, 0 to run"),
+                ("run_solver.py", self.library, out, *tight, "--", "true", 2, f"again has runs of {lie}: name another folder"),
+                ("run_solver.py", self.library, nothing, "--classes", "esy", "--", "true", 2, "there is no class 'esy'"),
+                ("run_solver.py", nothing, nothing, "--", "true", 2, "nothing holds no index.csv"),
+                ("check_solutions.py", nothing, out, 2, "nothing holds no index.csv"),
+                ("check_solutions.py", self.library, nothing, 2, "nothing holds no runs.csv")):
+            done = script(name, *arguments)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(said, done.stderr)
+        os.remove(os.path.join(out, "runs.csv"))
+        self.checked("again", "true", *tight)
+        self.assertFalse([name for name in os.listdir(out) if name.endswith(".sol")])
+
     def test_the_public_library_has_no_part_of_another_name(self):
         out = os.path.join(self.folder, "public")
         done = subprocess.run([os.path.join(SCRIPTS, "public_library"), out, self.folder, "whole", "hole"], capture_output=True, text=True, check=False)
@@ -72,7 +97,7 @@ class Scripts(unittest.TestCase):
         for program in there:
             check = self.checked(program, os.path.join(ROOT, "experiments", "adapters", commands[program]), "--formulation", "tight")
             self.assertEqual(check.returncode, 0, check.stdout)
-            self.assertRegex(check.stdout, r"easy +tight +2 +2 +0 +0 +0 +0 +0 ")
+            self.assertRegex(check.stdout, r"easy +tight +2 +2 +0 +0 +0 +0 +0 +0 ")
 
     def test_the_optimum_of_a_file_is_that_of_its_scene(self):
         """CBC has too little time for an own proof, path-pair has enough: the files have all rows, and CBC's program finds the same optimum."""
@@ -87,20 +112,19 @@ class Scripts(unittest.TestCase):
         run = script("run_solver.py", library, out, "--limit-s", "60", "--", os.path.join(ROOT, "experiments/adapters/cbc {mps} {sol} {limit_s} {gap} {threads} {seed}"))
         self.assertEqual(run.returncode, 0, run.stderr)
         answers = check_solutions.answers_of(library, out, check_solutions.known_values(library))
-        for row in flows:
-            self.assertEqual(answers[check_solutions.name_of(row)][0], "proven", answers)
+        self.assertEqual({answers[check_solutions.name_of(row)][0] for row in flows}, {"proven"}, answers)
 
     def test_solvers_confirm_and_refute_each_other(self):
         def verdicts(*values):
             answers = [["feasible" if low else "unverified", "", 1.0, 9.0, value] for value, low in values]
             check_solutions.compare(answers)
             return [answer[0] for answer in answers]
-        self.assertEqual(verdicts((-2.0, False), (-2.0, False)), ["proven", "proven"])
+        self.assertEqual(verdicts((-2.0, False), (-2.0, False)), ["agreed", "agreed"])
         self.assertEqual(verdicts((-2.0, False)), ["unverified"])
         self.assertEqual(verdicts((-2.0, False), (-3.0, True)), ["wrong", "feasible"])
         self.assertEqual(verdicts((-2.0, False), (-2.5, False)), ["wrong", "unverified"])
         self.assertEqual(verdicts((math.inf, False), (-3.0, True)), ["wrong", "feasible"])
-        self.assertEqual(verdicts((-2.0, False), (-2.5, False), (-2.5, False)), ["wrong", "proven", "proven"])
+        self.assertEqual(verdicts((-2.0, False), (-2.5, False), (-2.5, False)), ["wrong", "agreed", "agreed"])
 
     def test_the_archive_is_whole(self):
         out, archive = os.path.join(self.folder, "fast"), os.path.join(self.folder, "packed.tar.gz")
@@ -125,21 +149,20 @@ class Scripts(unittest.TestCase):
         self.assertEqual((rows[0]["first_by"], rows[0]["class"]), ("quick", "easy"))
         self.assertNotEqual(rows[1]["first_by"], "quick")
 
-    def test_wrong_answers_are_found(self):
-        for name, command, said in (
-                ("nothing_chosen", "printf '=status= optimal\\n=obj= 0\\n' > {sol}", "outside"),
-                ("infeasible", "echo =infeas= > {sol}", "claimed to be infeasible"),
-                ("unknown", "printf 'nothing 1\\n=status= optimal\\n' > {sol}", "there is no column nothing"),
-                ("fraction", "awk '/INTORG/{i=1} i && / cost /{print $1, 0.5; exit}' {mps} > {sol}", "not a whole number")):
+    def test_wrong_answers_are_found_and_only_these(self):
+        for name, command, code, said in (
+                ("nothing_chosen", "printf '=status= optimal\\n=obj= 0\\n' > {sol}", 1, "outside"),
+                ("infeasible", "echo =infeas= > {sol}", 1, "claimed to be infeasible"),
+                ("unknown", "printf 'nothing 1\\n=status= optimal\\n' > {sol}", 1, "there is no column nothing"),
+                ("fraction", "awk '/INTORG/{i=1} i && / cost /{print $1, 0.5; exit}' {mps} > {sol}", 1, "not a whole number"),
+                ("no_point", "echo =status= unknown > {sol}", 0, "easy"),
+                ("crash", "kill -SEGV $$", 0, "exit code -11")):
             check = self.checked(name, command, "--formulation", "tight")
             self.assertIn(said, check.stdout)
-            self.assertEqual(check.returncode, 1, check.stdout)
+            self.assertEqual(check.returncode, code, check.stdout)
 
     def test_a_claim_that_the_library_does_not_know_is_unverified(self):
-        path = os.path.join(self.folder, "two.mps")
-        with open(path, "w", encoding="ascii") as stream:
-            stream.write(PROGRAM_TEXT)
-        program = mps.read_mps(path)
+        program = self.read(mps.read_mps, PROGRAM_TEXT)
         optimum = mps.Solution("optimal", -2.0, None, {"y": 1.0})
         for known, verdict in (({}, "unverified"), ({"=best=": -2.0}, "unverified"), ({"=best=": -1.0}, "unverified"),
                                ({"=best=": -1.0, "=bestdual=": -2.5}, "unverified"), ({"=best=": -2.0, "=bestdual=": -2.0}, "proven"),
@@ -149,34 +172,19 @@ class Scripts(unittest.TestCase):
                 self.assertEqual(check_solutions.judged(program, optimum, known)[0], verdict)
         self.assertEqual(check_solutions.judged(program, mps.Solution("infeasible"), {})[0], "unverified")
         for claimed in (mps.Solution("optimal", -3.0, None, {"y": 1.0}), mps.Solution("optimal", -2.0, -1.0, {"y": 1.0}),
-                        mps.Solution("optimal", -2.0, None, {"y": 3.0}), mps.Solution("optimal", -2.0, None, {"y": 0.6})):
+                        mps.Solution("optimal", -2.0, None, {"y": 3.0}), mps.Solution("optimal", -2.0, None, {"y": 0.6}),
+                        mps.Solution("feasible", -1.0, -1.5, {"x": 1.0}), mps.Solution("unknown", None, math.inf)):
             self.assertEqual(check_solutions.judged(program, claimed, {"=opt=": -2.0})[0], "wrong")
 
     def test_contradictions_in_a_solution_cannot_be_read(self):
         head = "Optimal - objective value -2\n 1 y 1 -2\n"
         for text in (head + " 1 y 1 -2\n", head + "=obj= -3\n", head.replace("Optimal", "Stopped on time") + "=status= optimal\n"):
-            path = os.path.join(self.folder, "a.sol")
-            with open(path, "w", encoding="ascii") as stream:
-                stream.write(text)
             with self.assertRaises(ValueError):
-                mps.read_solution(path, ["x", "y"])
-
-    def test_no_point_and_no_claim_are_not_wrong(self):
-        self.assertEqual(self.checked("no_point", "echo =status= unknown > {sol}").returncode, 0)
-
-    def test_a_crash_is_a_failure(self):
-        check = self.checked("crash", "kill -SEGV $$")
-        self.assertEqual(check.returncode, 0, check.stdout)
-        self.assertRegex(check.stdout, r"failed: .*exit code -11")
+                self.read(mps.read_solution, text, ["x", "y"])
 
     def test_a_program_is_read(self):
-        path = os.path.join(self.folder, "two.mps")
-        with open(path, "w", encoding="ascii") as stream:
-            stream.write(PROGRAM_TEXT)
-        program = mps.read_mps(path)
-        self.assertEqual(program.cost, {"x": -1.0, "y": -2.0})
-        self.assertEqual(program.bounds, {"x": (0.0, 1.0), "y": (0.0, 1.0)})
-        self.assertEqual(program.integer, {"x", "y"})
+        program = self.read(mps.read_mps, PROGRAM_TEXT)
+        self.assertEqual((program.cost, program.bounds, program.integer), ({"x": -1.0, "y": -2.0}, {"x": (0.0, 1.0), "y": (0.0, 1.0)}, {"x", "y"}))
         self.assertIsNone(mps.violation(program, {"y": 1.0}))
         self.assertIn("row both", mps.violation(program, {"x": 1.0, "y": 1.0}))
         self.assertIn("not a whole number", mps.violation(program, {"y": 0.5}))
@@ -198,10 +206,7 @@ class Scripts(unittest.TestCase):
         }
         for name, text in texts.items():
             with self.subTest(name):
-                path = os.path.join(self.folder, "a.sol")
-                with open(path, "w", encoding="ascii") as stream:
-                    stream.write(text)
-                solution = mps.read_solution(path, ["x", "y"], {"both", "one"})
+                solution = self.read(mps.read_solution, text, ["x", "y"], {"both", "one"})
                 self.assertEqual(solution.objective, -2.0)
                 self.assertEqual({column: value for column, value in solution.values.items() if value}, {"y": 1.0})
                 self.assertEqual(solution.status, "optimal" if name in ("cbc", "glpsol", "highs", "scip") else "feasible")

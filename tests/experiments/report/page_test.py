@@ -129,17 +129,13 @@ class ReportPage(unittest.TestCase):
             return read(page)
 
     def test_is_well_formed_and_stands_alone(self):
-        self.assertEqual(self.page.wrong, [])
-        self.assertEqual(self.page.open, [])
-        self.assertEqual(self.page.outside, [])
+        self.assertEqual((self.page.wrong, self.page.open, self.page.outside), ([], [], []))
         self.assertEqual(sorted(self.page.ids), sorted(set(self.page.ids)))
         styles = "".join(re.findall(r"<style>(.*?)</style>", self.text, flags=re.S))
-        self.assertNotIn("url(", styles)
-        self.assertNotIn("@import", styles)
+        self.assertNotRegex(styles, r"url\(|@import")
 
     def test_figures_refer_to_what_is_there(self):
-        used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', self.text))
-        self.assertEqual(used - set(self.page.ids), set())
+        self.assertLessEqual(set(re.findall(r'(?:href="#|url\(#)([^")]+)', self.text)), set(self.page.ids))
 
     def test_has_every_figure_or_says_why_not(self):
         for name in ("headline", "by-rate", "methods", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
@@ -275,11 +271,10 @@ class ReportPage(unittest.TestCase):
         stored = [line for line in lines("optimality.jsonl") if "gap" in line and line["costs"] == "default"]
         equal = sum(line["equal"] for line in stored) / len(stored)
         self.assertIn(f"proven optimum in {100 * equal:.1f}\u00a0% of {len(stored)} scenes", self.text)
-        scenes = {line["scene"] for line in lines("backends.jsonl") if "scene" in line}
-        self.assertIn(f"n = 6: 0 of {len(scenes)} scenes", self.text)
+        self.assertIn("Claims refuted by another backend: 0.", self.text)
 
     def test_solves_of_all_visible_cones_are_a_size(self):
-        stored = lines("backends.jsonl")
+        stored = [line | {"refuted": 2 * (line.get("backend") == "path-pair")} if line.get("row") == "summary" else line for line in lines("backends.jsonl")]
         text = self.made_of_copy(lambda copy: write("".join(json.dumps(line) + "\n" for line in stored + [
             line | {"nearest": 0} for line in stored]), copy, "backends.jsonl"))
         ids = Page(text).ids
@@ -290,8 +285,9 @@ class ReportPage(unittest.TestCase):
         for group in {f"all {line.get('condition', '')}".strip() for line in summaries}:
             self.assertGreaterEqual(len(re.findall(rf">{group}</t[dh]>", measures)), 2, group)
         for title in ("geometric mean ms", "PAR 10 ms", "adds to the virtual best, ms", "variation %", "primal integral ms", "dual integral ms",
-                      "peak MiB", "p, Holm", "coefficient of variation"):
+                      "peak MiB", "p, Holm", "coefficient of variation", ' data-measure="refuted" data-value="2">', "refuted by another backend: 4."):
             self.assertIn(title, measures)
+        self.assertIn("path-pair, claims refuted: 4", part(text, "figure", "engine-times"))
         for block in (line for line in stored if line.get("row") == "block"):
             self.assertIn(f"{block['backend']}: {block['version'] or 'version unknown'}", measures)
 
@@ -550,8 +546,7 @@ class ReportPage(unittest.TestCase):
                 shutil.copy(os.path.join(RESULTS, name), folder)
                 done = report(folder, page, "--png", os.path.join(folder, "pictures"))
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
-                with open(page, encoding="utf-8") as stream:
-                    text = stream.read()
+                text = read(page)
                 made = Page(text)
                 self.assertEqual((made.wrong, made.open, made.outside), ([], [], []))
                 self.assertLessEqual({"exactness", "protocol", "engine-times", "solver-measures"}, set(made.ids))
