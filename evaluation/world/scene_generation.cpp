@@ -26,7 +26,8 @@ constexpr double kMaxRate = 0.99;
 
 void require_between(double value, double lowest, double highest, const std::string& key) {
     if (!(value >= lowest && value <= highest)) {
-        throw InvalidInput(key, fmt::format("must be in [{}, {}]", lowest, highest));
+        const char* const note = key == "fp" && value > 1.0 ? ": a share; 30 % is 0.3" : "";
+        throw InvalidInput(key, fmt::format("must be in [{}, {}]{}", lowest, highest, note));
     }
 }
 

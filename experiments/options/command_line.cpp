@@ -117,6 +117,22 @@ bool takes_positionals(const CLI::App& app) {
                           CLI::ExitCodes::ExtrasError);
 }
 
+/// The message has the option whose name begins like this one, by three letters or more, if there is one.
+[[noreturn]] void refuse_option(const CLI::App& app, std::string_view name) {
+    std::string nearest;
+    std::ptrdiff_t most = 2;
+    for (const CLI::Option* option : app.get_options({})) {
+        for (const std::string& known : option->get_lnames()) {
+            const std::ptrdiff_t shared = std::ranges::mismatch(known, name.substr(2)).in1 - known.begin();
+            if (shared <= most) continue;
+            most = shared;
+            nearest = ", perhaps --" + known;
+        }
+    }
+    throw CLI::ParseError(fmt::format("there is no option '{}'{}", name, nearest),
+                          CLI::ExitCodes::ExtrasError);
+}
+
 namespace fs = std::filesystem;
 
 /// Marks the options of add_output_option.
@@ -274,6 +290,8 @@ void refuse_misread_words(CLI::App& program, std::span<const char* const> argume
         if (word.starts_with("-") && word.size() > 1) {
             const std::size_t equals = word.find('=');
             option = app->get_option_no_throw(word.substr(0, equals));
+            if (option == nullptr && word.starts_with("--") && word.size() > 2)
+                refuse_option(*app, word.substr(0, equals));
             values = equals != std::string::npos ? 1 : 0;
             if (values == 1) require_whole_list(option, word.substr(equals + 1));
             names_a_command = false;

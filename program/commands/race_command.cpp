@@ -43,6 +43,7 @@ struct Options {
     double drift_deg = 0.0;
     unsigned threads = 1;
     std::string out;
+    bool overwrite = false;
 };
 
 bool has_known_course(std::optional<Mission> mission) {
@@ -106,6 +107,8 @@ std::vector<FoldedCourse> courses_of(const Options& options, std::optional<Missi
         return courses;
     }
     if (options.vary) throw InvalidInput("--vary", "is for the missions acceleration and skidpad");
+    if (options.tracks.empty() && options.families.empty())
+        throw InvalidInput("--tracks", "is required, except in acceleration and skidpad");
     for (const std::string& spec : options.tracks) add_circuits(courses, spec, mission, {});
     for (const CourseFamily& family : parse_families(options.families)) {
         std::filesystem::path fold;
@@ -260,10 +263,17 @@ class Outputs {
     AtomicFile times_;
 };
 
-void make_folder(const std::filesystem::path& folder) {
+/// Throws InputError if the folder has a comparison, or without `overwrite` the files of an earlier race.
+void make_folder(const std::filesystem::path& folder, bool overwrite) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw InputError(folder, 0, "", "cannot be made: " + failure.message());
+    if (std::filesystem::exists(folder / "run.json"))
+        throw InputError(folder, 0, "", "holds a comparison; name another folder");
+    for (const char* const file : {"race.json", "table.txt"}) {
+        if (!overwrite && std::filesystem::exists(folder / file))
+            throw InputError(folder, 0, "", fmt::format("holds {}; --overwrite replaces it", file));
+    }
 }
 
 void run_races(Options& options) {
@@ -319,8 +329,13 @@ void run_races(Options& options) {
             }
         }
     }
-    make_folder(options.out);
+    make_folder(options.out, options.overwrite);
     Outputs outputs(options.out);
+    if (mission && std::ranges::any_of(all, [](const Racer& racer) { return racer.method.has_value(); }) &&
+        std::ranges::none_of(all, &Racer::has_planner)) {
+        fmt::print(stderr, "conelane: {}: only a planner says when to stop, use --planner\n",
+                   options.mission);
+    }
     run_all(options, entries, heats);
     outputs.write(options, all, entries, heats);
 }
@@ -345,9 +360,11 @@ void add_race_command(CLI::App& program) {
         .add_option("--weights", options->weights,
                     "weights of the methods that take them: a file that `conelane train` wrote")
         ->excludes("--folds");
-    command.add_option(
-        "--methods", options->detectors,
-        "names of `conelane methods`; exec:NAME=COMMAND; truth: the true centre line; none: no path");
+    command
+        .add_option(
+            "--methods", options->detectors,
+            "names of `conelane methods`; exec:NAME=COMMAND; truth: the true centre line; none: no path")
+        ->capture_default_str();
     command.add_flag("--planner", options->planner, "each detector drives through a planner");
     command.add_flag("--both", options->both, "each detector drives alone and through a planner");
     add_word_option(command, "--mission", options->mission,
@@ -357,7 +374,9 @@ void add_race_command(CLI::App& program) {
     command.add_flag("--vary", options->vary,
                      "acceleration and skidpad: each seed draws another course within the rules");
     command.add_option("--condition", options->condition, "paper, car, harsh or slam")->capture_default_str();
-    command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
+    command.add_option("--fp", options->rates, "share of false positives")
+        ->delimiter(',')
+        ->capture_default_str();
     command.add_option("--range", options->race.sight.range_m, "radius of the visible half disc [m]")
         ->capture_default_str();
     command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
@@ -378,7 +397,8 @@ void add_race_command(CLI::App& program) {
                       "correlation time of the pose error [s]; 0: drawn in each frame");
     command.add_option("--seed", options->seeds, "seeds; each gives a race")
         ->delimiter(',')
-        ->check(seed_number());
+        ->check(seed_number())
+        ->capture_default_str();
     add_number_option(command, "--latency-ms", options->latency_ms, 0.0, 1000.0,
                       "simulated time from a frame to its path");
     command.add_flag("--colors", options->race.sight.with_color, "cones have their colour");
@@ -401,6 +421,7 @@ void add_race_command(CLI::App& program) {
     add_threads_option(command, options->threads, "number of threads; the results do not depend on it");
     command.add_option("--out", options->out, "folder for race.json, table.txt, replay.jsonl and times.txt")
         ->required();
+    command.add_flag("--overwrite", options->overwrite, "replace an earlier race in that folder");
     command.callback([options] { run_races(*options); });
 }
 

@@ -8,7 +8,7 @@
 namespace conelane::experiments {
 namespace {
 
-using testing::HasSubstr;
+using testing::ContainsRegex, testing::HasSubstr;
 
 class RaceCommand : public ProgramFixture {};
 
@@ -30,22 +30,24 @@ TEST_F(RaceCommand, AnyNumberOfThreadsGivesTheSameFiles) {
 
 TEST_F(RaceCommand, MissionsNeedNoTracks) {
     for (const char* const mission : {"acceleration", "skidpad"}) {
-        run_well("race --mission " + std::string(mission) + " --methods truth --out out");
+        run_well("race --mission " + std::string(mission) + " --methods truth --overwrite --out out");
         const nlohmann::json json = nlohmann::json::parse(text_of(path("out") / "race.json"));
         EXPECT_EQ(json.at("races").at(0).at("end"), "finished");
     }
+    expect_refused("race --mission skidpad --out out", {"out: holds race.json", "--overwrite"});
+    EXPECT_THAT(run("race --mission acceleration --methods clc --out alone").errors, HasSubstr("--planner"));
+    EXPECT_THAT(run("race --help").output, ContainsRegex("--methods.*front(.|\n)*--fp.*0(.|\n)*--seed.*1"));
 }
 
 TEST_F(RaceCommand, BySafeSpeedFirstAndLaterLapsAreCompared) {
     run_well(
         "race --tracks generated:kidney --methods truth --speed safe --laps 2 --condition paper --out out");
     EXPECT_THAT(text_of(path("out") / "table.txt"),
-                testing::ContainsRegex("truth +0 first +1.000(.|\n)*truth +0 later +1.000"));
+                ContainsRegex("truth +0 first +1.000(.|\n)*truth +0 later +1.000"));
     const nlohmann::json json = nlohmann::json::parse(text_of(path("out") / "race.json"));
     EXPECT_EQ(json.at("speed_mps"), "safe");
     EXPECT_GT(json.at("races").at(0).at("later_laps").at("time_s"), 5.0);
-    expect_refused("race --tracks generated:kidney --methods truth --speed fast --out out2",
-                   {"--speed", "safe"});
+    expect_refused("race --tracks generated:kidney --speed fast --out out2", {"--speed", "safe"});
     expect_refused("race --tracks generated:kidney --methods truth --fov 200 --out out2", {"--fov"});
 }
 
@@ -111,7 +113,7 @@ TEST_F(RaceCommand, UnusedOrInvalidWeightsAreRefused) {
 
 TEST_F(RaceCommand, BadInputIsRefusedInOneLine) {
     const std::string kidney = "race --tracks generated:kidney --methods truth --out out ";
-    expect_refused("race --methods truth --out out", {"--tracks"});
+    expect_refused("race --methods truth --out out", {"--tracks: is required, except"});
     expect_refused("race --tracks generated:nowhere --methods truth --out out", {"nowhere"});
     expect_refused("race --tracks generated:kidney --methods nobody --out out", {"nobody"});
     expect_refused(kidney + "--condition rain", {"condition", "rain"});
@@ -129,10 +131,10 @@ TEST_F(RaceCommand, BadInputIsRefusedInOneLine) {
 }
 
 TEST_F(RaceCommand, IfOneFileCannotBeWrittenNoneIs) {
-    std::filesystem::create_directories(path("out") / "table.txt");
+    std::filesystem::create_directories(path("out") / "times.txt");
     const Outcome outcome = run("race --tracks generated:kidney --methods truth --out out");
     EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.errors, HasSubstr("table.txt"));
+    EXPECT_THAT(outcome.errors, HasSubstr("times.txt"));
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("out")), {}), 1);
 }
 
