@@ -24,8 +24,8 @@ template <typename Get>
 auto if_any(const Get& get) {
     return [get](const SolveRow& row) {
         const Json value = std::invoke(get, row);
-        return value.empty() || value == 0U || value == false || value == "" ? std::nullopt
-                                                                             : FieldValue(value);
+        const bool is_nothing = value.empty() || value == 0U || value == false || value == Json("");
+        return is_nothing ? std::nullopt : FieldValue(value);
     };
 }
 
