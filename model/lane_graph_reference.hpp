@@ -43,7 +43,7 @@ class LearnedReference {
             if (k == i || k == j) continue;
             crowd += fall(length(place_[k] - middle) / Real(3.5));
             const Real share = dot(place_[k] - place_[i], along) / (far * far);
-            if (share <= 0 || share >= 1) continue;  // NOLINT(misc-redundant-expression)
+            if (!(share > 0 && share < 1)) continue;  // NOLINT(misc-redundant-expression): NaN too
             const Real off = wedge(along, place_[k] - place_[i]) / far;
             const Real inner = share * (1 - share);
             beside += 4 * inner * fall(off / Real(1.2));
