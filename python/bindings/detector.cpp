@@ -394,7 +394,7 @@ line is not on the lane, not known, or crossed)",
             &Plan::stop_line_m)
         .get(
             "reason",
-            R"(str: why the course of the lap before is not trusted to its end, or why the path is lost; else empty)",
+            R"(str: why the course is not trusted to its end, the path is lost or the frame not later; else empty)",
             &Plan::reason)
         .get("phase",
              R"(str: of skidpad "approach", "right 1", "right 2", "left 1", "left 2" or "exit"; else empty)",

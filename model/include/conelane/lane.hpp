@@ -17,8 +17,8 @@ struct Lane {
     bool operator==(const Lane&) const = default;
 };
 
-/// Largest width of a lane in scenes, scores and defaults [m]. If the ends of the boundaries are farther
-/// apart, one boundary has gone on without the other.
+/// Largest width in scores and defaults, and of far ends in scenes [m]. If the ends of the boundaries
+/// are farther apart, one has gone on alone.
 inline constexpr double kMaxLaneWidth_m = 6.5;
 
 /// Drops cones from the far ends until the last cone of each side is within `widest_m` [m] of the polyline of

@@ -54,7 +54,7 @@ struct RldParameters {
     // Edges over gaps, where a cone of a boundary is missing; off by default.
     double d_gap = 0.0;      ///< longest edge allowed though s_crit forbids it [m]; off at 0
     double theta_gap = 0.4;  ///< largest angle from straight on of a turn with such an edge [rad]
-    double d_clear = 0.0;    ///< a cone nearer to its line than this is within this of an end [m]
+    double d_clear = 0.0;    ///< such an edge has no cone this near, except this near its ends [m]
 
     double d_side = 0.0;  ///< a near endpoint is at most this far from the car's axis [m]; off at 0
 

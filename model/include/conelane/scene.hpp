@@ -68,7 +68,8 @@ struct Cone {
     /// Class probabilities. If present, `front`, `front-warm` and ProblemEdge::color_cost use them instead of
     /// `color`. The planner and the learned feature `same_color` use `color` alone.
     std::optional<ColorProbabilities> color_probabilities{};
-    /// How uncertain the position is. Only `front` and `front-warm` use it. Absent: same answers as with 0.
+    /// How uncertain the position is. Only `front` and `front-warm` use it; the planner in trackdrive and
+    /// autocross drops it. Absent: as 0.
     std::optional<PositionCovariance> position_covariance{};
 
     /// `color_probabilities`, or else those of `color`.
