@@ -1,7 +1,7 @@
 #include "experiments/studies/backend.hpp"
 
+#include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "conelane/version.hpp"
 #include "solvers/milp/milp_solver.hpp"
 #include "solvers/registry.hpp"
 

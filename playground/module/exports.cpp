@@ -3,10 +3,10 @@
 // input is thrown, see runtime.cpp.
 #include "conelane/check.hpp"
 #include "conelane/core_solvers.hpp"
+#include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
 #include "conelane/solve_scene.hpp"
-#include "conelane/version.hpp"
 #include "evaluation/world/centre_line.hpp"
 #include "evaluation/world/generated_tracks.hpp"
 #include "model/deadline.hpp"

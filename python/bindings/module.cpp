@@ -1,5 +1,5 @@
+#include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "conelane/version.hpp"
 #include "evaluation/input_error.hpp"
 #include "python/bindings/bindings.hpp"
 

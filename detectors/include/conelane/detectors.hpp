@@ -69,4 +69,7 @@ struct DetectorOptions {
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(std::string_view name,
                                                           const DetectorOptions& options = {});
 
+/// The library's version, MAJOR.MINOR.PATCH; docs/promises.md says which interfaces stay.
+[[nodiscard]] std::string_view version();
+
 }  // namespace conelane
