@@ -70,10 +70,10 @@ add_test(NAME consumer.package_is_relocatable
                                   -P ${CMAKE_CURRENT_LIST_DIR}/relocatable.cmake)
 set_tests_properties(consumer.package_is_relocatable PROPERTIES FIXTURES_REQUIRED consumer_prefix)
 
-# Each builds the core again, which takes minutes. Tests that only configure run every day.
+# Most build the core again, which takes minutes. Tests that only configure or install run every day.
 get_property(all_tests DIRECTORY PROPERTY TESTS)
 foreach(test IN LISTS all_tests)
-    if(test MATCHES "^consumer[.]" AND NOT test MATCHES "needs_eigen_alone|names_what_it_needs")
+    if(test MATCHES "^consumer[.]" AND NOT test MATCHES "needs_eigen_alone|names_what_it_needs|relocatable")
         set_tests_properties(${test} PROPERTIES LABELS consumer.long)
     endif()
 endforeach()

@@ -147,7 +147,7 @@ TEST(Clocks, NothingOfADetectionThatWasStoppedIsLeft) {
 
 /// A ring of 800 cones around one cone, with edges from that one alone: a third of a million turns at one
 /// cone, which take most of the time. 250 of 300 readings of the clock are among them.
-TEST(Clocks, MakingAProblemChecksTheClockAmongTurns) {
+TEST(Clocks, MakingAProblemChecksTheClockAmongTurnsAndPairs) {
     Scene scene;
     scene.cones.push_back({0, {0.0, 0.0}});
     for (int k = 0; k < 800; ++k) {
@@ -162,6 +162,10 @@ TEST(Clocks, MakingAProblemChecksTheClockAmongTurns) {
     ASSERT_EQ(limited.problem->edges.size(), 800U);
     ASSERT_GT(limited.problem->turns.size(), 100'000U);
     EXPECT_GT(clock_looks.monotonic, 150);
+    for (Cone& cone : scene.cones) cone.position = 1000.0 * cone.position;  // no edges: pairs take the time
+    forget_looks();
+    EXPECT_TRUE(make_problem(scene, parameters, EdgeExtent::candidates, Deadline(kLongLimit_ms)).problem);
+    EXPECT_GT(clock_looks.monotonic, 15);
 }
 
 /// The processor is away for 40 of 60 s, at any reading of the clock: more than half of the time, which is

@@ -103,8 +103,10 @@ MilpReport report_in(std::string text, int status) {
     report.nodes = trailer.nodes;
     report.message = text.substr(end - trailer.message_bytes, trailer.message_bytes);
     report.point.resize(trailer.point_bytes / sizeof(double));
-    std::memcpy(report.point.data(), text.data() + end - trailer.message_bytes - trailer.point_bytes,
-                trailer.point_bytes);
+    if (!report.point.empty()) {
+        std::memcpy(report.point.data(), text.data() + end - trailer.message_bytes - trailer.point_bytes,
+                    trailer.point_bytes);
+    }
     return report;
 }
 

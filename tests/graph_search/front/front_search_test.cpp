@@ -459,7 +459,8 @@ Scene hairpin(double radius_m) {
 
 /// A lane stores its cones as bits by number, which repeat from 256 on.
 TEST(FrontDetector, FollowsAStraightOfManyCones) {
-    const Scene scene = straight_front_scene(70);
+    Scene scene = straight_front_scene(70);
+    for (int k = 0; k < 200; ++k) scene.cones.insert(scene.cones.begin() + 70, {1000 + k, {1.5 * k, 30.0}});
     const LaneAnswer answer = detect(scene);
     EXPECT_EQ(answer.lane.left.size(), 70U);
     EXPECT_EQ(answer.lane.right.size(), 70U);
