@@ -145,8 +145,7 @@ TEST(Clocks, NothingOfADetectionThatWasStoppedIsLeft) {
     }
 }
 
-/// A ring of 800 cones around one cone, with edges from that one alone: a third of a million turns at one
-/// cone, which take most of the time. 250 of 300 readings of the clock are among them.
+/// A ring of 800 cones around one, with edges from that one alone: 250 of 300 readings are among its turns.
 TEST(Clocks, MakingAProblemChecksTheClockAmongTurnsAndPairs) {
     Scene scene;
     scene.cones.push_back({0, {0.0, 0.0}});

@@ -10,11 +10,13 @@ namespace {
 std::size_t allocations = 0;
 }  // namespace
 
-// Every allocation of this program uses this; the other forms of operator new call it.
-// If this is inlined, GCC 12 reports new and free as a mismatch.
-[[gnu::noinline]] void* operator new(std::size_t size) {
+// Every allocation of this program uses this. If it is inlined, GCC 12 reports new and free as a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     ++allocations;
-    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    return std::malloc(size == 0 ? 1 : size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    if (void* memory = operator new(size, std::nothrow)) return memory;
     throw std::bad_alloc();
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {

@@ -51,7 +51,7 @@ bool PartnerBounds::find_walks(const PairRelaxation& relaxation, const ResidualG
         for (int a = residual.size(); a-- > 0;) {
             // Where no leg comes, cycles may gain.
             if (relaxation.forward(0)[to_index(a)] == kUnreachable) continue;
-            double* const here = &to_end_[to_index(a) * ends];
+            double* const here = to_end_.data() + to_index(a) * ends;
             for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p) {
                 const int next = residual.out_arc[to_index(p)];
                 if (changed_[to_index(next)] < sweep - 1) continue;

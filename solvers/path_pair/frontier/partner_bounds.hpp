@@ -23,9 +23,11 @@ class PartnerBounds {
     void find_ends(const PairRelaxation& relaxation, const ResidualGraph& residual, double limit);
     bool find_walks(const PairRelaxation& relaxation, const ResidualGraph& residual, SearchClock& clock);
     bool find_partners(const PairRelaxation& relaxation, const ResidualGraph& residual, SearchClock& clock);
-    [[nodiscard]] const double* to_ends(int arc) const { return &to_end_[to_index(arc) * ends_.size()]; }
+    [[nodiscard]] const double* to_ends(int arc) const {
+        return to_end_.data() + to_index(arc) * ends_.size();
+    }
     [[nodiscard]] const double* to_partners(int arc) const {
-        return &to_partner_[to_index(arc) * ends_.size()];
+        return to_partner_.data() + to_index(arc) * ends_.size();
     }
 
     std::vector<int> ends_;        ///< cones

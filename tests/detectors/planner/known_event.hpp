@@ -64,15 +64,15 @@ inline Pose skidpad_route(double s_m) {
 class Sight {
   public:
     Sight(std::vector<Point> cones, double noise_m, double miss_rate, unsigned seed)
-        : cones_(std::move(cones)), noise_(0.0, noise_m), miss_rate_(miss_rate), random_(seed) {}
+        : cones_(std::move(cones)), noise_m_(noise_m), miss_rate_(miss_rate), random_(seed) {}
 
     Frame look(const Pose& pose, const Pose& course, double time_s) {
         Frame frame{time_s, in_map(course, pose), {}};
         for (const Point& cone : cones_) {
             if ((cone - pose.position).norm() > 20.0 || pose.ahead_m(cone) < 0.0) continue;
             if (std::uniform_real_distribution<double>()(random_) < miss_rate_) continue;
-            const double x_m = noise_(random_);
-            const double y_m = noise_(random_);
+            const double x_m = noise_m_ * noise_(random_);
+            const double y_m = noise_m_ * noise_(random_);
             frame.cones.push_back({kNoId, in_map(course, {cone + Point(x_m, y_m), 0.0}).position});
         }
         return frame;
@@ -92,7 +92,8 @@ class Sight {
 
   private:
     std::vector<Point> cones_;
-    std::normal_distribution<double> noise_;
+    double noise_m_;
+    std::normal_distribution<double> noise_;  // of standard deviation 1, since 0 is none
     double miss_rate_;
     std::mt19937 random_;
 };
