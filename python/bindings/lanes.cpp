@@ -130,9 +130,10 @@ see `stopped_by` and `message`; "error": see `message`.)",
              [](LaneStatus status) { return status == LaneStatus::found; })
         .get("message", "str: of an error; why a found lane cannot be driven; that another d_near was used",
              steps..., &LaneAnswer::message)
-        .get("stopped_by",
-             R"(Optional[str]: the limit that ended the search: "time", "iterations" or "memory")", steps...,
-             &LaneAnswer::stopped_by, kName)
+        .get(
+            "stopped_by",
+            R"(Optional[str]: the limit: "time", "memory" or "iterations", also of a beam that left lanes out)",
+            steps..., &LaneAnswer::stopped_by, kName)
         .get("confidence",
              "Optional[float]: probability that the lane is usable; None if the detector has none", steps...,
              &LaneAnswer::confidence)

@@ -69,7 +69,7 @@ struct LaneAnswer {
     Lane lane;
     std::string message;
     /// The limit that ended the search. Absent if no limit did: the lane is the detector's best.
-    /// With status stopped, `iterations` may also mean that a beam left lanes out, or that the lane cannot be
+    /// `iterations` may also mean that a beam left lanes out or, with status stopped, that the lane cannot be
     /// driven.
     std::optional<StopReason> stopped_by;
     std::optional<double> confidence;  ///< probability that the lane is usable
