@@ -457,7 +457,7 @@ Scene hairpin(double radius_m) {
     return scene;
 }
 
-/// A lane stores its cones as bits by number, which repeat from 256 on.
+/// A lane stores its cones as bits by number, which repeat from 256 on. Cones beside the lane raise numbers.
 TEST(FrontDetector, FollowsAStraightOfManyCones) {
     Scene scene = straight_front_scene(70);
     for (int k = 0; k < 200; ++k) scene.cones.insert(scene.cones.begin() + 70, {1000 + k, {1.5 * k, 30.0}});
